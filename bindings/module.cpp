@@ -1,0 +1,7 @@
+// The Python module: one line per subject. Each subject's file binds one header of the core.
+#include "bind.hpp"
+
+NB_MODULE(ALULA_MODULE, m) {
+  m.doc() = "Alula's compiled core: kinematics, filters, estimators and equations of motion.";
+  bind_processor(m);
+}

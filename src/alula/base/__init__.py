@@ -1,0 +1,1 @@
+"""What every stage uses and no stage knows: messages, units, provenance, whole files."""

@@ -1,0 +1,21 @@
+"""Where the flight data lies that tests are judged by; none of it is in the repository."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(os.environ.get("ALULA_DATA", Path(__file__).parents[2] / "shared" / "data"))
+
+
+def data(*parts: str) -> Path:
+    """The path of a data file; skips the test where it is absent, unless data are required."""
+    path = ROOT.joinpath(*parts)
+    if not path.exists():
+        reason = f"flight data not found: {path.name} (set ALULA_DATA to the folder that holds it)"
+        if os.environ.get("ALULA_REQUIRE_DATA"):
+            pytest.fail(reason)
+        pytest.skip(reason)
+    return path
