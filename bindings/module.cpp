@@ -3,5 +3,6 @@
 
 NB_MODULE(ALULA_MODULE, m) {
   m.doc() = "Alula's compiled core: kinematics, filters, estimators and equations of motion.";
+  bind_path(m);
   bind_processor(m);
 }

@@ -93,8 +93,8 @@ _FACTORS: dict[str, dict[str, float]] = {
     },
     "kg/s": {
         "kg/s": 1, "kg/h": 1 / 3600, "kg/min": 1 / 60, "gram/s": 1e-3, "lb/s": LB,
-        "lb/h": LB / 3600,        "lb/hr": LB / 3600, "lbs/h": LB / 3600, "lbs/hr": LB / 3600, "pph": LB / 3600,
-        "lb/min": LB / 60,
+        "lb/h": LB / 3600, "lb/hr": LB / 3600, "lbs/h": LB / 3600, "lbs/hr": LB / 3600,
+        "pph": LB / 3600, "lb/min": LB / 60,
     },
     "V": {"V": 1, "volt": 1, "volts": 1, "mV": 1e-3},
     "A": {"A": 1, "amp": 1, "amps": 1, "ampere": 1, "mA": 1e-3},
