@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -90,13 +91,15 @@ class Aircraft:
     def sensor_position(self, channel: str) -> Array:
         """Where the sensor of `channel` sits, (3,) m from the datum.
 
-        By the channel's own name, else by its group ('imu', 'airdata', 'gps'), else the center
-        of gravity at zero fuel used (without [mass]: the reference point).
+        By the channel's own name ('alpha_2' for a second sensor), else by its group ('imu',
+        'airdata', 'gps'), else the center of gravity at zero fuel used (without [mass]: the
+        reference point).
         """
         if channel in self.sensors:
             return self.sensors[channel]
+        first = re.sub(r"_\d+$", "", channel)
         for group, members in SENSOR_GROUPS.items():
-            if channel in members and group in self.sensors:
+            if first in members and group in self.sensors:
                 return self.sensors[group]
         return self.reference_point if self.mass is None else self.mass.cg
 

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-import hashlib
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from pydantic import ValidationError
 
-from alula.aircraft.aircraft import Aircraft, Engine, Envelope
+from alula.aircraft.aircraft import SENSOR_GROUPS, Aircraft, Engine, Envelope
 from alula.aircraft.control_signs import sign_factor
 from alula.aircraft.frames import rotation
 from alula.aircraft.mass import Component, MassModel, check_inertia, combine, inertia_tensor
 from alula.aircraft.schema import AircraftFile, Control, EngineTable, Inertia, Mass
-from alula.aircraft.validation import bad_file, read_toml
 from alula.base.arrays import Array, frozen
-from alula.base.messages import Message, refuse, warn
+from alula.base.messages import BadInput, Message, refuse, warn
+from alula.base.project_messages import explain, read_toml
+from alula.base.units import known_channel
 
 
 def aircraft_schema() -> dict[str, Any]:
@@ -30,11 +30,11 @@ def load_aircraft(path: str | Path) -> Aircraft:
     Raises BadInput with one message per thing that is wrong: file, key, expected, found.
     """
     path = Path(path)
-    raw, tables = read_toml(path, "aircraft file")
+    text, tables, sha256 = read_toml(path)
     try:
         file = AircraftFile.model_validate(tables)
     except ValidationError as error:
-        raise bad_file(error, AircraftFile, path) from None
+        raise BadInput(*explain(error, path, text)) from None
     turn = rotation(file.datum.frame)
     mass = _mass(file.mass, turn, path) if file.mass else None
     if file.reference.point is not None:
@@ -67,8 +67,12 @@ def load_aircraft(path: str | Path) -> Aircraft:
         datum=file.datum.name,
         assumed=tuple(file.assumed),
         path=str(path),
-        sha256=hashlib.sha256(raw).hexdigest(),
-        messages=(*(mass.messages if mass else ()), *_geometry(file, path)),
+        sha256=sha256,
+        messages=(
+            *(mass.messages if mass else ()),
+            *_geometry(file, path),
+            *_sensor_names(file, path),
+        ),
     )
 
 
@@ -85,6 +89,21 @@ def _geometry(file: AircraftFile, path: Path) -> tuple[Message, ...]:
             found=f"{ratio:.3g}",
             do="Check that b is the full span, not the half, and the units: m2, m, m.",
         ),
+    )
+
+
+def _sensor_names(file: AircraftFile, path: Path) -> tuple[Message, ...]:
+    """A sensor that no channel will ask for is a spelling mistake more often than not."""
+    return tuple(
+        warn(
+            "unknown_sensor",
+            where=f"{path}, sensors.{name}",
+            expected="a channel's name or one of " + ", ".join(SENSOR_GROUPS),
+            found=f"'{name}'",
+            do="Check its spelling; a second sensor of alpha is 'alpha_2'.",
+        )
+        for name in file.sensors
+        if name not in SENSOR_GROUPS and known_channel(name) is None
     )
 
 

@@ -14,7 +14,7 @@ Range = Annotated[list[Number], Field(min_length=2, max_length=2)]
 
 def _check_order(key: str, limits: list[float] | None) -> None:
     if limits is not None and not limits[0] < limits[1]:
-        raise ValueError(f"'{key}' as [lowest, highest], found {limits}")
+        raise ValueError(f"'{key}' as [lowest, highest]|{limits}")
 
 
 class Table(BaseModel):
@@ -90,13 +90,11 @@ class Mass(Table):
         totals = ("mass", "cg", "Ixx", "Iyy", "Izz", "Ixz")
         given = [k for k in (*totals, "Ixy", "Iyz") if getattr(self, k) is not None]
         if self.components and given:
-            raise ValueError(
-                "totals or components, not both; found components and " + ", ".join(given)
-            )
+            raise ValueError("totals or components, not both|components and " + ", ".join(given))
         missing = [k for k in totals if getattr(self, k) is None]
         if not self.components and missing:
             raise ValueError(
-                "components or all of mass, cg, Ixx, Iyy, Izz, Ixz; missing " + ", ".join(missing)
+                "components, or all of mass, cg, Ixx, Iyy, Izz, Ixz|no " + ", ".join(missing)
             )
         return self
 
@@ -130,12 +128,12 @@ class EngineTable(Table):
     @model_validator(mode="after")
     def _one_source(self) -> EngineTable:
         if (self.channel is None) == (self.thrust is None):
-            raise ValueError("either 'channel' or 'thrust', exactly one of them")
+            raise ValueError("either 'channel' or 'thrust'|both or neither of them")
         if self.direction is not None:
             if self.tilt_deg is not None or self.toe_deg is not None:
-                raise ValueError("either 'direction' or 'tilt_deg' and 'toe_deg', not both")
+                raise ValueError("'direction', or 'tilt_deg' and 'toe_deg'|both")
             if not any(self.direction):
-                raise ValueError("a direction that is not zero")
+                raise ValueError("a direction|all zeros")
         return self
 
 
@@ -149,7 +147,7 @@ class Control(Table):
     @model_validator(mode="after")
     def _ordered(self) -> Control:
         if self.limits_deg is not None and self.limits is not None:
-            raise ValueError("either 'limits_deg' or 'limits', not both")
+            raise ValueError("'limits_deg' or 'limits'|both")
         for key in ("limits_deg", "limits"):
             _check_order(key, getattr(self, key))
         return self
