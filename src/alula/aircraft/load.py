@@ -144,7 +144,7 @@ def _mass(table: Mass, turn: Array, path: Path) -> MassModel:
         )
     messages += check_inertia(inertia, where)
     model = MassModel(mass, frozen(cg), frozen(inertia), fuel, messages)
-    if fuel is not None:
+    if fuel is not None and not messages:
         dry_inertia = model.at(np.array([fuel.mass])).inertia[0]
         messages += check_inertia(dry_inertia, f"{where} (all fuel burned)")
     return MassModel(mass, frozen(cg), frozen(inertia), fuel, messages)
