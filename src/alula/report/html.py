@@ -38,7 +38,7 @@ def join(parts: Iterable[object]) -> Html:
     return Html("".join(escape(p) for p in parts if p is not None))
 
 
-def tag(name: str, *children: object, **attributes: object) -> Html:
+def tag(name: str, /, *children: object, **attributes: object) -> Html:
     """One element. `class_` and `aria_label` become `class` and `aria-label`; None leaves out."""
     text = [f"<{name}"]
     for key, value in attributes.items():
