@@ -181,7 +181,8 @@ def card(m: Maneuver, rate: float) -> dict[str, Any]:
     channels = [channel("ax", "m/s2", -0.4, 1.9), channel("az", "m/s2", -14.1, -3.2),
                 channel("q", "rad/s", -0.08, 0.09), channel("alpha", "rad", 0.01, 0.11),
                 channel("V", "m/s", 96.2, 104.1), channel("h", "m", 4788.0, 4826.0),
-                channel("v_north", "m/s", -4.0, 4.0), channel("de", "rad", -0.05, 0.02)]  # fmt: skip
+                channel("v_north", "m/s", -4.0, 4.0),
+                channel("de", "rad", -0.05, 0.02)]  # fmt: skip
     entry = {"V": 102.1, "alpha": 0.0611, "h": 4800.0}
     return {"id": m.log, "channels": channels,
             "maneuvers": [{"id": m.id, "n": round(25 * rate) + 1, "entry": entry}]}  # fmt: skip

@@ -39,7 +39,7 @@ WORDS = {
     "dr": "rudder",
     "df": "flap",
     "dt": "throttle",
-    "thrust": "thrust",
+    "thrust": "all engines",
     "CX": "force forward",
     "CY": "force right",
     "CZ": "force down",

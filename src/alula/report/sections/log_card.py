@@ -7,7 +7,7 @@ from typing import Any
 
 from alula.report.html import Html, join, table, tag
 from alula.report.input import ReportInput
-from alula.report.numbers import MISSING, number, shown
+from alula.report.numbers import MISSING, compact, number, shown, span
 
 
 def log_cards(report: ReportInput) -> Html:
@@ -45,7 +45,7 @@ def _card(card: Mapping[str, Any]) -> Html:
                 unit,
                 _plain(channel, "rate", 4),
                 channel.get("n", MISSING),
-                f"{_plain(channel, 'start', 5)} … {_plain(channel, 'end', 5)}",
+                span(channel.get("start"), channel.get("end")),
                 _count(channel.get("gaps")),
                 _count(channel.get("nan")),
                 in_shown("min"),
@@ -55,18 +55,35 @@ def _card(card: Mapping[str, Any]) -> Html:
             ]
         )
     return table(
-        join(["Channels of log ", tag("code", card.get("id", "")), ", as recorded, at their own rates"]),
-        ["Channel", "Unit", "Rate, Hz", "Samples", "Span, s", "Gaps", "Missing", "Min", "Median",
-         "Max", "Source and conversion"],
+        join(
+            [
+                "Channels of log ",
+                tag("code", card.get("id", "")),
+                ", as recorded, at their own rates",
+            ]
+        ),
+        [
+            "Channel",
+            "Unit",
+            "Rate, Hz",
+            "Samples",
+            "Span, s",
+            "Gaps",
+            "Missing",
+            "Min",
+            "Median",
+            "Max",
+            "Source and conversion",
+        ],
         rows,
-        numeric=(2, 3, 5, 6, 7, 8, 9),
+        numeric=(2, 3, 4, 5, 6, 7, 8, 9),
         class_="dense",
     )
 
 
 def _plain(channel: Mapping[str, Any], key: str, digits: int) -> str:
     value = channel.get(key)
-    return MISSING if value is None else number(float(value), digits)
+    return MISSING if value is None else compact(float(value), digits)
 
 
 def _count(value: Any) -> object:

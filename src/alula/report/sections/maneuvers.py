@@ -7,15 +7,13 @@ from typing import Any
 
 from alula.report.html import Html, join, table, tag
 from alula.report.input import ReportInput
-from alula.report.numbers import MISSING, number, shown
 from alula.report.names import unit_of
+from alula.report.numbers import MISSING, number, shown, span
 
 
 def maneuvers(report: ReportInput) -> Html:
     """One row per maneuver; held-out ones are marked."""
-    cards = {
-        str(m.get("id")): m for card in report.cards for m in card.get("maneuvers", ())
-    }
+    cards = {str(m.get("id")): m for card in report.cards for m in card.get("maneuvers", ())}
     rows = []
     for m in report.maneuvers:
         card = cards.get(m.id, {})
@@ -24,7 +22,7 @@ def maneuvers(report: ReportInput) -> Html:
                 tag("code", m.id),
                 m.kind,
                 m.log,
-                f"{number(m.start, 5)} … {number(m.end, 5)}",
+                span(m.start, m.end),
                 card.get("n", card.get("samples", MISSING)),
                 m.aspect,
                 tag("span", "held out", class_="tag") if m.held_out else "fit",
@@ -34,10 +32,19 @@ def maneuvers(report: ReportInput) -> Html:
         )
     return table(
         "Maneuvers. One that is held out was never seen by the fit and serves to validate it.",
-        ["Maneuver", "Kind", "Log", "Window, s", "Samples", "Aspect", "Use", "Configuration",
-         "Entry condition"],
+        [
+            "Maneuver",
+            "Kind",
+            "Log",
+            "Window, s",
+            "Samples",
+            "Aspect",
+            "Use",
+            "Configuration",
+            "Entry condition",
+        ],
         rows,
-        numeric=(4,),
+        numeric=(3, 4),
     )
 
 
@@ -48,7 +55,9 @@ def _entry(entry: Any) -> Html | str:
         for name, value in entry.items():
             if isinstance(value, int | float):
                 factor, unit = shown(unit_of(str(name)))
-                parts.append(f"{name} {number(factor * value, 4)}{'' if unit == '–' else ' ' + unit}")
+                parts.append(
+                    f"{name} {number(factor * value, 4)}{'' if unit == '–' else ' ' + unit}"
+                )
             else:
                 parts.append(f"{name} {value}")
         return join([", ".join(parts) or MISSING])

@@ -24,8 +24,8 @@ def parameters(result: Identification) -> Html:
         [
             tag(
                 "p",
-                f"Method {result.method}. ‘se’ includes colored residuals and the uncertainty of the "
-                "reconstruction; ‘plain se’ would hold if the residuals were white. The picture "
+                f"Method {result.method}. ‘se’ includes colored residuals and the uncertainty of "
+                "the reconstruction; ‘plain se’ would hold if the residuals were white. The picture "
                 "shows the 95 % interval and the value beside zero (upright line). Verdicts: ",
                 mark("good", "ok"),
                 " resolved; ",
@@ -34,7 +34,10 @@ def parameters(result: Identification) -> Html:
                 mark("bad", "not identifiable"),
                 " these data do not determine it, whatever value a fit may give.",
             ),
-            *(_table(name, [p for p in result.parameters if p.coefficient == name]) for name in names),
+            *(
+                _table(name, [p for p in result.parameters if p.coefficient == name])
+                for name in names
+            ),
         ]
     )
 
@@ -42,8 +45,17 @@ def parameters(result: Identification) -> Html:
 def _table(coefficient: str, members: list[Parameter]) -> Html:
     truth = any(p.truth is not None for p in members)
     words = f", {WORDS[coefficient]}" if coefficient in WORDS else ""
-    head = ["Parameter", "Value ± se", "Unit", "95 % interval", "Zero and interval", "se / value",
-            "Plain se", "VIF", "Verdict"]
+    head = [
+        "Parameter",
+        "Value ± se",
+        "Unit",
+        "95 % interval",
+        "Zero and interval",
+        "se / value",
+        "Plain se",
+        "VIF",
+        "Verdict",
+    ]
     rows = []
     for p in members:
         row = _row(p)
@@ -81,6 +93,8 @@ def combination(p: Parameter) -> str:
     for tie in p.tied_to:
         size = abs(tie.weight)
         factor = "" if abs(size - 1.0) < 5e-3 else f"{number(size, 2)} "
-        sign = ("− " if tie.weight < 0 else "") if not text else (" − " if tie.weight < 0 else " + ")
+        sign = (
+            ("− " if tie.weight < 0 else "") if not text else (" − " if tie.weight < 0 else " + ")
+        )
         text += f"{sign}{factor}{tie.name}"
     return text

@@ -12,7 +12,7 @@ from alula.report.html import Html, join, table, tag
 from alula.report.names import titled
 from alula.report.numbers import number, plus_minus, rms, shown
 from alula.report.pictures import mark, within_picture
-from alula.report.sections.motion import motion_figures, state_figures, sensor_figure
+from alula.report.sections.motion import motion_figures, sensor_figure, state_figures
 
 
 def reconstruction(result: Reconstruction, figures: FigureStore) -> Html:
@@ -20,7 +20,7 @@ def reconstruction(result: Reconstruction, figures: FigureStore) -> Html:
     level = "good" if result.converged else "bad"
     return join(
         [
-            tag("p", mark(level, f"Method {result.method}. {result.status}")),
+            tag("p", mark(level, f"Method {result.method}. {result.status}", long=True)),
             _constants(result),
             _nis(result),
             _mismatch(result),
@@ -73,7 +73,7 @@ def _nis(result: Reconstruction) -> Html:
     )
     return tag(
         "div",
-        tag("p", mark("good" if inside else "caution", f"{words}: {meaning}.")),
+        tag("p", mark("good" if inside else "caution", f"{words}: {meaning}.", long=True)),
         within_picture(result.nis_mean, low, high, words),
         class_="keep",
     )
@@ -120,10 +120,19 @@ def _whiteness(result: Reconstruction) -> Html:
                 ]
             )
     return table(
-        "Sensors: stated noise, residual (measured minus fitted), share of innovations inside their "
-        "2 σ band (95 % expected) and lag-1 autocorrelation, called white within ±2/√n.",
-        ["Sensor", "Maneuver", "Samples", "Unit", "Stated σ", "Residual rms", "In 2 σ", "Lag 1",
-         "Innovations"],
+        "Sensors: stated noise, residual (measured minus fitted), share of innovations inside "
+        "their 2 σ band (95 % expected) and lag-1 autocorrelation, called white within ±2/√n.",
+        [
+            "Sensor",
+            "Maneuver",
+            "Samples",
+            "Unit",
+            "Stated σ",
+            "Residual rms",
+            "In 2 σ",
+            "Lag 1",
+            "Innovations",
+        ],
         rows,
         numeric=(2, 4, 5, 6, 7),
         class_="dense",
