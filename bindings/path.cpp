@@ -40,7 +40,7 @@ void add_sensor(Model& model, int quantity, const std::vector<double>& position,
 }
 
 template <class Filter>
-nb::dict run(const Model& model, Vector t, Matrix inputs, Matrix readings,
+nb::dict run_rows(const Model& model, Vector t, Matrix inputs, Matrix readings,
              nb::ndarray<const int, nb::ndim<1>, nb::c_contig> start, Matrix initial, Vector x0,
              Vector sigma0, bool smooth, bool keep_covariance) {
   const int samples = static_cast<int>(t.shape(0)), n = model.states, ny = model.sensors.size();
@@ -92,6 +92,16 @@ nb::dict run(const Model& model, Vector t, Matrix inputs, Matrix readings,
   out["reached"] = reached;
   out["repairs"] = repairs;
   return out;
+}
+
+// The filter with the shorter of the two row lengths that hold the states.
+template <template <class, int> class Filter>
+nb::dict run(const Model& model, Vector t, Matrix inputs, Matrix readings,
+             nb::ndarray<const int, nb::ndim<1>, nb::c_contig> start, Matrix initial, Vector x0,
+             Vector sigma0, bool smooth, bool keep_covariance) {
+  const auto chosen = model.states < kShortRow ? &run_rows<Filter<double, kShortRow>>
+                                               : &run_rows<Filter<double, kLongRow>>;
+  return chosen(model, t, inputs, readings, start, initial, x0, sigma0, smooth, keep_covariance);
 }
 
 nb::dict open_loop(const Model& model, Vector t, Matrix inputs, Vector x0, bool jacobian) {
@@ -152,10 +162,10 @@ void bind_path(nb::module_& m) {
       "the row of `initial` where a maneuver begins and -1 elsewhere, initial (maneuvers, 2 motion)\n"
       "values and standard deviations, x0 and sigma0 (states,) the constants' prior. Returns\n"
       "histories; `done` < n where the filter lost its covariance.";
-  m.def("path_ekf", &run<Extended<double>>, nb::arg("model"), nb::arg("t"), nb::arg("inputs"),
+  m.def("path_ekf", &run<Extended>, nb::arg("model"), nb::arg("t"), nb::arg("inputs"),
         nb::arg("readings"), nb::arg("start"), nb::arg("initial"), nb::arg("x0"),
         nb::arg("sigma0"), nb::arg("smooth") = false, nb::arg("keep_covariance") = false, doc);
-  m.def("path_ukf", &run<Unscented<double>>, nb::arg("model"), nb::arg("t"), nb::arg("inputs"),
+  m.def("path_ukf", &run<Unscented>, nb::arg("model"), nb::arg("t"), nb::arg("inputs"),
         nb::arg("readings"), nb::arg("start"), nb::arg("initial"), nb::arg("x0"),
         nb::arg("sigma0"), nb::arg("smooth") = false, nb::arg("keep_covariance") = false, doc);
   m.def("path_open_loop", &open_loop, nb::arg("model"), nb::arg("t"), nb::arg("inputs"),
