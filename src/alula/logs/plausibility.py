@@ -101,13 +101,29 @@ def _vertical(x: Array) -> Doubt | None:
 _RATE = _limit(10.0, "rad/s", "deg/s")
 _HALF_CIRCLE = _limit(math.pi / 2 + 0.05, "rad", "deg")
 _CIRCLE = _limit(2 * math.pi + 0.05, "rad", "deg")
+
+
+def _incidence(x: Array) -> Doubt | None:
+    """A vane on the ground points anywhere, so the median counts besides the circle."""
+    middle = float(np.median(np.abs(x)))
+    if middle <= 0.8:
+        return _CIRCLE(x)
+    return Doubt(
+        "unit_implausible",
+        "an angle of attack under 0.8 rad (46 deg) most of the time",
+        f"a median magnitude of {middle:.3g} rad: it looks like deg",
+        "If so, write unit = 'deg'.",
+    )
+
+
 RULES: dict[str, Rule] = {
     "az": _vertical,
     **dict.fromkeys(("ax", "ay"), _limit(150.0, "m/s2", "ft/s2")),
     **dict.fromkeys(("p", "q", "r"), _RATE),
     **dict.fromkeys(("pdot", "qdot", "rdot"), _limit(200.0, "rad/s2", "deg/s2")),
-    **dict.fromkeys(("theta", "lat"), _HALF_CIRCLE),
-    **dict.fromkeys(("phi", "psi", "psi_mag", "lon", "alpha", "beta", "beta_flank"), _CIRCLE),
+    **dict.fromkeys(("theta", "lat", "beta"), _HALF_CIRCLE),
+    "alpha": _incidence,
+    **dict.fromkeys(("phi", "psi", "psi_mag", "lon", "beta_flank"), _CIRCLE),
     "V": _limit(1000.0, "m/s", "ft/s or km/h"),
     "mach": _limit(10.0, "", "%"),
     "dt": _limit(2.0, "", "%"),
