@@ -56,7 +56,8 @@ const AlulaPlot = (() => {
     get left() { return LEFT; }
     get right() { return this.width - RIGHT; }
 
-    /* Draw at a fixed width and sharpness (for paper), or by the page again with null. */
+    /* Draw at a fixed width and sharpness with panels of a share of their height (for paper), or
+       by the page again with null. */
     fix(size) {
       this.fixed = size;
       this.draw();
@@ -96,7 +97,7 @@ const AlulaPlot = (() => {
         p.rows = c.measureText(p.label).width + 50 + p.legend > width - RIGHT ? 2 : 1;
         p.head = y;
         p.top = y + ROW * p.rows + 2;
-        p.bottom = p.top + (p.small ? 74 : 130);
+        p.bottom = p.top + (p.small ? 74 : 130) * (this.fixed ? this.fixed.height : 1);
         y = p.bottom + GAP;
       }
       return y - GAP + FOOT;
@@ -214,7 +215,7 @@ const AlulaPlot = (() => {
         for (let k = i; k < j; k++) {
           const t = this.times.at(k);
           if (!Number.isNaN(lows.v[k])) {
-            put(this.x(t), lows.v[k], highs.v[k], t - last > this.times.gap);
+            put(this.x(t), lows.v[k], highs.v[k], last === -Infinity || t - last > this.times.gap);
             last = t;
           } else last = -Infinity;
         }

@@ -78,7 +78,7 @@ def render(report: ReportInput) -> str:
 def _sections(report: ReportInput, figures: FigureStore) -> list[tuple[str, str, Html]]:
     """(anchor, title, content) of each section that has something to show."""
     found: list[tuple[str, str, Html]] = []
-    if report.cards or report.files:
+    if report.cards:
         found.append(("log", "Log card", log_cards(report)))
     if report.maneuvers:
         found.append(("maneuvers", "Maneuvers", maneuvers(report)))
@@ -101,8 +101,8 @@ def _sections(report: ReportInput, figures: FigureStore) -> list[tuple[str, str,
 _HOW_TO = tag(
     "p",
     "The plots of one maneuver share their time axis. Drag to zoom, Shift-drag to pan, "
-    "double-click to reset; the wheel zooms in a plot that was clicked. Keys in a focused plot: arrows pan, "
-    "+ and − zoom, 0 resets, [ and ] move the cursor from sample to sample.",
+    "double-click to reset; the wheel zooms in a plot that was clicked. Keys in a focused plot: "
+    "arrows pan, + and − zoom, 0 resets, [ and ] move the cursor from sample to sample.",
     class_="note screen",
 )
 

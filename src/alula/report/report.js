@@ -49,7 +49,7 @@
   addEventListener("beforeprint", () => {
     before = root.dataset.theme || "";
     root.dataset.theme = "light";
-    for (const plot of plots) plot.fix({ width: 350, scale: 3 });
+    for (const plot of plots) plot.fix({ width: 350, scale: 3, height: 0.8 });
   });
   addEventListener("afterprint", () => {
     if (before) root.dataset.theme = before; else delete root.dataset.theme;

@@ -49,6 +49,8 @@ def _fits(result: Identification) -> Html:
 def _coefficient(result: Identification, name: str, figures: FigureStore) -> Html:
     series = [s for s in result.series if s.coefficient == name]
     words = f", {WORDS[name]}" if name in WORDS else ""
+    if name in result.labels:
+        words += f" ({result.labels[name]})"
     return tag(
         "section",
         tag("h3", tag("code", name), words),

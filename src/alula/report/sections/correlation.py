@@ -15,7 +15,7 @@ _STRONG = 0.9  # usual limit above which two estimates should not be read one by
 
 def correlation(result: Identification) -> Html:
     """Heat maps, and a table of the pairs above 0.9."""
-    r = correlations(result.covariance)
+    r = np.clip(result.correlations, -1.0, 1.0)
     names = [p.name for p in result.parameters]
     owners = np.array([p.coefficient for p in result.parameters])
     maps = []
@@ -40,15 +40,6 @@ def correlation(result: Identification) -> Html:
             _across(owners, names, r),
         ]
     )
-
-
-def correlations(covariance: Array) -> Array:
-    """Correlation (n, n) of a covariance (n, n); NaN where a variance is not positive, finite."""
-    variance = np.diag(covariance).copy()
-    variance[~(np.isfinite(variance) & (variance > 0))] = np.nan
-    scale = np.sqrt(variance)
-    r: Array = np.clip(covariance / scale[:, None] / scale[None, :], -1.0, 1.0)
-    return r
 
 
 def _pairs(names: list[str], r: Array) -> Html:

@@ -25,8 +25,9 @@ def parameters(result: Identification) -> Html:
             tag(
                 "p",
                 f"Method {result.method}. ‘se’ includes colored residuals and the uncertainty of "
-                "the reconstruction; ‘plain se’ would hold if the residuals were white. The picture "
-                "shows the 95 % interval and the value beside zero (upright line). Verdicts: ",
+                "the reconstruction; ‘plain se’ would hold if the residuals were white. The "
+                "picture shows the 95 % interval and the value beside zero (upright line). "
+                "Verdicts: ",
                 mark("good", "ok"),
                 " resolved; ",
                 mark("caution", "weak"),

@@ -104,13 +104,14 @@ def _whiteness(result: Reconstruction) -> Html:
     for segment in result.segments:
         for s in segment.sensors:
             factor, unit = shown(s.unit)
-            bound = 2.0 / math.sqrt(max(len(s.t), 1))
+            samples = int(np.isfinite(s.measured).sum())
+            bound = 2.0 / math.sqrt(max(samples, 1))
             white = abs(s.whiteness) <= bound
             rows.append(
                 [
                     tag("code", s.name),
                     segment.maneuver.id,
-                    len(s.t),
+                    samples,
                     unit,
                     number(factor * s.sigma, 3),
                     number(factor * rms(s.measured - s.fitted), 3),

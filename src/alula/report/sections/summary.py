@@ -97,7 +97,8 @@ def reasons(report: ReportInput) -> list[Html]:
         join(
             [
                 f"Messages: {_many(count['error'], 'error')}, "
-                f"{_many(count['warning'], 'warning')}, {_many(count['info'], 'note')} on what was done to the data; ",
+                f"{_many(count['warning'], 'warning')}, {_many(count['info'], 'note')} "
+                "on what was done to the data; ",
                 tag("a", "all are listed below", href="#messages"),
                 ".",
             ]
