@@ -61,7 +61,7 @@ def expand(text: str, file: Path, key: str) -> str:
         return os.environ[name]
 
     expanded = Path(re.sub(r"\$\{(\w+)\}", value, text)).expanduser()
-    return str((file.parent / expanded).absolute())
+    return os.path.abspath(file.parent / expanded)
 
 
 def explain(error: ValidationError, path: Path, text: str = "") -> list[Message]:

@@ -32,7 +32,7 @@ def take_out(values: Array, fill: list[float] | None, where: str) -> tuple[Array
             )
         )
     if fill is None:
-        looks = _looks_filled(values)
+        looks = looks_filled(values)
         if looks is not None:
             value, times = looks
             raise refuse(
@@ -58,7 +58,7 @@ def take_out(values: Array, fill: list[float] | None, where: str) -> tuple[Array
     return values, messages
 
 
-def _looks_filled(values: Array) -> tuple[float, int] | None:
+def looks_filled(values: Array) -> tuple[float, int] | None:
     """A usual fill value that lies outside the span of the other values by more than that span."""
     finite = values[np.isfinite(values)]
     if len(finite) == 0:

@@ -7,7 +7,7 @@ write. `confirmed = true` for a channel turns the refusal into a warning.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -88,6 +88,13 @@ def _vertical(x: Array) -> Doubt | None:
             f"{value:.3g}: it looks like ft/s2",
             "If so, write unit = 'ft/s2'" + (" and sign = -1." if value > 0 else "."),
         )
+    if abs(value) < 0.3:
+        return Doubt(
+            "gravity_removed",
+            expected,
+            f"{value:.2g} m/s2: it looks as if gravity was taken out",
+            "If so, put it back: offset = -1 with unit 'g', before sign; or -9.81 with 'm/s2'.",
+        )
     if value > 5.0:
         return Doubt(
             "axes_z_up",
@@ -125,6 +132,10 @@ RULES: dict[str, Rule] = {
     "alpha": _incidence,
     **dict.fromkeys(("phi", "psi", "psi_mag", "lon", "beta_flank"), _CIRCLE),
     "V": _limit(1000.0, "m/s", "ft/s or km/h"),
+    "climb_rate": _limit(300.0, "m/s", "ft/min"),
+    **dict.fromkeys(
+        ("fuel_flow", "fuel_flow_left", "fuel_flow_right"), _limit(30.0, "kg/s", "lb/h")
+    ),
     "mach": _limit(10.0, "", "%"),
     "dt": _limit(2.0, "", "%"),
     "rho": _middle(0.01, 2.0, "kg/m3", {"slug/ft3": (1e-5, 0.004)}),
@@ -145,7 +156,8 @@ def check(
             continue
         values = channel.values[np.isfinite(channel.values)]
         where = f"{log.path}: channel {name}"
-        for doubt in _doubts(name, channel, values):
+        doubt = doubt_of(name, channel.unit, values)
+        if doubt is not None:
             if spec.confirmed:
                 said = warn(
                     doubt.code,
@@ -162,10 +174,10 @@ def check(
                 )
         messages += _resting(name, where, values)
     problems += _times(log, specs, channels)
-    for angle, rate, other in (("phi", "p", "deg or deg/s"), ("theta", "q", "deg or deg/s")):
+    for angle, rate in (("phi", "p"), ("theta", "q")):
         if angle in channels and rate in channels:
             confirmed = specs[angle].confirmed or specs[rate].confirmed
-            told = _agree(log, channels[angle], channels[rate], other)
+            told = _agree(log, channels[angle], channels[rate])
             if told is not None:
                 (messages if confirmed or told.level == "warning" else problems).append(told)
     if problems:
@@ -173,14 +185,13 @@ def check(
     return messages
 
 
-def _doubts(name: str, channel: Channel, values: Array) -> Iterator[Doubt]:
+def doubt_of(name: str, unit: str, values: Array) -> Doubt | None:
+    """Why finite SI values (n,) cannot be those of the channel `name`; None if they can."""
     base = name.rstrip("0123456789").rstrip("_") if name[-1:].isdigit() else name
     rule = RULES.get(base)
-    if rule is None and base in ("de", "da", "dr", "df") and channel.unit == "rad":
+    if rule is None and base in ("de", "da", "dr", "df") and unit == "rad":
         rule = _CONTROL
-    doubt = rule(values) if rule else None
-    if doubt is not None:
-        yield doubt
+    return rule(values) if rule and len(values) else None
 
 
 def _resting(name: str, where: str, values: Array) -> list[Message]:
@@ -223,7 +234,7 @@ def _times(
     return []
 
 
-def _agree(log: LogSpec, angle: Channel, rate: Channel, unit: str) -> Message | None:
+def _agree(log: LogSpec, angle: Channel, rate: Channel) -> Message | None:
     """Compare the changes of an attitude angle with its rate integrated, over a second each.
 
     For moderate attitudes d(phi)/dt is about p and d(theta)/dt about q; a slope of 57 or 1/57 is
@@ -254,7 +265,7 @@ def _agree(log: LogSpec, angle: Channel, rate: Channel, unit: str) -> Message | 
             "error",
             where,
             expected,
-            f"{slope:.3g} times as much: it looks like {which} ({unit})",
+            f"{slope:.3g} times as much: it looks like {which}",
             "Correct the unit of one of them. If it is right as it is, write confirmed = true.",
         )
     if correlation < -0.7:
