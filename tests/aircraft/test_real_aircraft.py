@@ -9,6 +9,7 @@ import pytest
 import scipy.io
 
 from alula.aircraft import load_aircraft
+from alula.base.arrays import Array
 from alula.base.project import load_project
 from data import ROOT, data
 
@@ -43,3 +44,27 @@ def test_twin_otter_span_and_chord_are_the_recording_s() -> None:
     S, b, c = x[0, 76:79] * np.array([0.3048**2, 0.3048, 0.3048])
     np.testing.assert_allclose([aircraft.b, aircraft.c], [b, c], rtol=1e-3)  # of four figures
     np.testing.assert_allclose(aircraft.S, S, rtol=1e-2)  # the type's 420 ft2, here 422.5
+
+
+def test_attas_accelerometers_are_not_at_the_center_of_gravity_they_are_named_for() -> None:
+    """With the file's arms the side force depends on sideslip as found elsewhere, CYb -1.0035."""
+    aircraft = load_aircraft(HOUSE / "aircraft/attas.toml")
+    mass = aircraft.mass_properties(np.zeros(1)).mass[0]
+
+    def side_force(arm: Array) -> tuple[float, float]:
+        """Slope of CY on beta and its R2, aileron and rudder maneuver together."""
+        CY, beta = [], []
+        for name in ("Ail1", "Rud1"):
+            x = scipy.io.loadmat(data("attas", f"fAttas{name}.mat"))[f"fAttas{name}"]
+            w, dw = np.radians(x[:, 6:9]), np.radians(x[:, 16:19])
+            ay = (x[:, 1:4] - np.cross(dw, arm) - np.cross(w, np.cross(w, arm)))[:, 1]
+            boom = np.cross(w, aircraft.sensor_position("beta"))[:, 1]
+            beta.append(np.radians(x[:, 13]) - boom / x[:, 14])
+            CY.append(mass * ay / (0.5 * x[:, 33] * x[:, 14] ** 2 * aircraft.S))
+        y, b = np.concatenate(CY), np.concatenate(beta)
+        return float(np.polyfit(b, y, 1)[0]), float(np.corrcoef(b, y)[0, 1] ** 2)
+
+    slope, r2 = side_force(aircraft.sensor_position("ay"))
+    assert slope == pytest.approx(-1.0035, rel=0.06)  # both are cross-checks, not truth
+    assert r2 > 0.96
+    assert side_force(np.zeros(3))[1] < 0.96
