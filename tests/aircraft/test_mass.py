@@ -96,9 +96,11 @@ def test_without_fuel_table_nothing_changes(tmp_path: Path) -> None:
 def test_missing_fuel_samples_stay_missing(tmp_path: Path) -> None:
     text, _ = components()
     text += "[mass.fuel]\nmass = 20.0\nposition = [1.5, -0.4, 0.6]\n"
-    got = load(tmp_path, text).mass_properties(np.array([5.0, np.nan]))
+    aircraft = load(tmp_path, text)
+    got = aircraft.mass_properties(np.array([5.0, np.nan]))
     assert np.isfinite(got.mass[0])
     assert np.isnan(got.mass[1])
+    assert np.isnan(aircraft.mass_properties(np.full(3, np.nan)).inertia).all()
 
 
 def test_values_cannot_be_written_to(tmp_path: Path) -> None:

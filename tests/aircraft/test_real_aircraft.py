@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -68,3 +69,20 @@ def test_attas_accelerometers_are_not_at_the_center_of_gravity_they_are_named_fo
     assert slope == pytest.approx(-1.0035, rel=0.06)  # both are cross-checks, not truth
     assert r2 > 0.96
     assert side_force(np.zeros(3))[1] < 0.96
+
+
+@pytest.mark.parametrize("way", ["totals", "components"])
+def test_the_documented_file_loads(tmp_path: Path, way: str) -> None:
+    """The blocks of docs/aircraft_file.md in their order make an aircraft file, in either way."""
+    text = (HOUSE / "docs/aircraft_file.md").read_text()
+    blocks = re.findall(r"```toml\n(.*?)```", text, flags=re.DOTALL)
+    left_out = blocks[2 if way == "totals" else 1]
+    assert ("[[mass.components]]" in left_out) == (way == "totals")
+    file = "".join(block for block in blocks if block is not left_out)
+    path = tmp_path / "aircraft.toml"
+    path.write_text(file if way == "totals" else file.replace('"mass.Ixz", ', ""))
+    aircraft = load_aircraft(path)
+    assert aircraft.messages == ()
+    assert aircraft.mass is not None
+    assert aircraft.mass.fuel is not None
+    assert set(aircraft.sensors) == {"imu", "airdata", "gps", "beta"}

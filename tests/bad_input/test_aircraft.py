@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import re
+import tempfile
 from pathlib import Path
 
 import numpy as np
 import pytest
 import scipy.io
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from alula.aircraft import load_aircraft
 from alula.base.messages import BadInput, Message
@@ -159,3 +163,36 @@ def test_more_fuel_burned_than_was_on_board(tmp_path: Path) -> None:
     path.write_text(GOOD.replace("[[engines]]", fuel, 1))
     with pytest.raises(BadInput, match="0 to 120 kg"):
         load_aircraft(path).mass_properties(np.array([10.0, 120.0]))
+
+
+NUMBERS = ["0", "-1", "1e300", "1e-300", "inf", "nan", '"x"', "[]", "{}", "true", "9" * 400]
+
+
+@settings(max_examples=200, deadline=None, derandomize=True)
+@given(st.data())
+def test_damaged_files_are_loaded_or_refused(draw: st.DataObject) -> None:
+    """Numbers replaced, lines left out, doubled or cut: an aircraft or a message, nothing else."""
+    fuel = "[mass.fuel]\nmass = 50.0\n[[engines]]\ndirection = [1.0, 0.0, 0.5]"
+    lines = GOOD.replace("[[engines]]", fuel, 1).splitlines()
+    for _ in range(draw.draw(st.integers(1, 3))):
+        i = draw.draw(st.integers(0, len(lines) - 1))
+        kind = draw.draw(st.sampled_from(["number", "drop", "double", "cut"]))
+        if kind == "number":
+            new = draw.draw(st.sampled_from(NUMBERS))
+            lines[i] = re.sub(r"-?\d+\.\d+", lambda _, new=new: new, lines[i], count=1)
+        elif kind == "cut":
+            lines[i] = lines[i][: draw.draw(st.integers(0, len(lines[i])))]
+        else:
+            lines[i : i + 1] = [] if kind == "drop" else [lines[i]] * 2
+        if not lines:
+            break
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "aircraft.toml"
+        path.write_text("\n".join(lines))
+        try:
+            aircraft = load_aircraft(path)
+        except BadInput:
+            return
+    if aircraft.mass is not None:
+        assert np.isfinite(aircraft.mass_properties(np.zeros(1)).inertia).all()
+    assert all(np.isfinite(engine.direction).all() for engine in aircraft.engines)
