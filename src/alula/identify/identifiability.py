@@ -91,7 +91,8 @@ def variance_inflation(fit: Regression) -> Array:
 def _noise_directions(fit: Regression, covariance: Array, free: list[int]) -> tuple[Array, Array]:
     """Directions of scaled parameters along which the regressors are white; their scale.
 
-    Solves the symmetric eigenproblem noise * w = share * total * w with total whitened first.
+    Solves the symmetric eigenproblem noise * w = share * total * w with total whitened first. Small
+    members of a direction are chance, and would bring a large parameter's significance with them.
     """
     centered, rough = [], []
     for weight, block in zip(fit.weights, fit.blocks, strict=True):
@@ -115,7 +116,7 @@ def _noise_directions(fit: Regression, covariance: Array, free: list[int]) -> tu
     directions = []
     for w in (whitened @ axes[share**2 > WHITE_SHARE].T).T:
         step = np.zeros(len(free))
-        step[~constant] = w
+        step[~constant] = np.where(np.abs(w) < MEMBER_NOISE * np.max(np.abs(w)), 0.0, w)
         if not _significant(step, fit.solution.value[free], covariance, free, scale):
             directions.append(step)
     return _orthonormal(directions, len(free)), scale

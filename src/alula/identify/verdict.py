@@ -52,9 +52,7 @@ def assess(
     that are good enough, by name. units: by name, where the names do not tell them.
     """
     covariance = fit.coloured.covariance + added
-    typical = [
-        scales.get(name, typical_magnitude(coefficient, name.split("[")[0])) for name in fit.names
-    ]
+    typical = [typical_magnitude(coefficient, name.split("[")[0]) for name in fit.names]
     lost = unresolved(fit, covariance, typical)
     inflation = variance_inflation(fit)
     white = np.sqrt(np.diag(fit.solution.covariance))
