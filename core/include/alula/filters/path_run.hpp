@@ -131,13 +131,15 @@ int run_smoother(Filter& filter, const PathModel<T>& model, const PathRecord<T>&
 }
 
 // Open loop: the kinematics integrated from state x0 (states) with constants as they are, no
-// measurement used. Writes motion (samples, motion), readings (samples, sensors) and, where the
+// measurement used. `held` (samples, motion) may give motion states that are taken as measured
+// instead of integrated; NaN where a state is free, null where all are. Writes motion (samples, motion), readings (samples, sensors) and, where the
 // pointers are set, their exact Jacobians with respect to x0: motion_jacobian (samples, motion,
 // states) and readings_jacobian (samples, sensors, states). This is the model of the
 // maximum-likelihood form, and its sensitivities. Dittrich 2016, Eq. (3.62), variational.
 template <class T>
 void run_open_loop(const PathModel<T>& model, const T* t, const T* inputs, int samples,
-                   const T* x0, T* motion, T* readings, T* motion_jacobian, T* readings_jacobian) {
+                   const T* x0, const T* held, T* motion, T* readings, T* motion_jacobian,
+                   T* readings_jacobian) {
   const int n = model.states, ny = model.sensors.size(), nm = model.motion;
   constexpr int R = kMaxStates;
   T x[R], z[kMaxOutputs], F[kMotionStatesWithPosition][R], H[kMaxOutputs][R];
@@ -160,6 +162,11 @@ void run_open_loop(const PathModel<T>& model, const T* t, const T* inputs, int s
       for (int i = 0; i < nm; ++i)
         for (int j = 0; j < n; ++j) J[i][j] = next[i][j];
     }
+    for (int i = 0; held && i < nm; ++i)
+      if (std::isfinite(held[k * nm + i])) {
+        x[i] = held[k * nm + i];
+        for (int j = 0; j < n; ++j) J[i][j] = T(0);
+      }
     path_outputs_jacobian<R>(model, x, inputs + k * kInertialInputs, z, H);
     for (int i = 0; i < nm; ++i) {
       motion[k * nm + i] = x[i];

@@ -123,7 +123,9 @@ constexpr T value_of(const T& x) { return x; }
 template <class T, int N>
 constexpr T value_of(const Dual<T, N>& x) { return x.value; }
 
-// Plain numbers answer to the same name as duals and lanes.
+// Plain numbers answer to the same names as duals and lanes.
+using std::atan2;
+using std::sqrt;
 inline void sincos(double x, double& s, double& c) { s = std::sin(x); c = std::cos(x); }
 inline void sincos(float x, float& s, float& c) { s = std::sin(x); c = std::cos(x); }
 
