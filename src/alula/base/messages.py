@@ -24,8 +24,7 @@ class Message:
 
     def __str__(self) -> str:
         return (
-            f"{self.where}: expected {self.expected}, found {self.found}. {self.do}"
-            f" [{self.code}]"
+            f"{self.where}: expected {self.expected}, found {self.found}. {self.do} [{self.code}]"
         )
 
     def as_dict(self) -> dict[str, str]:
