@@ -12,6 +12,7 @@ using VectorOut = nb::ndarray<double, nb::ndim<1>, nb::c_contig, nb::device::cpu
 using MatrixOut = nb::ndarray<double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 using CubeOut = nb::ndarray<double, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
 
+void bind_path(nb::module_& m);
 void bind_processor(nb::module_& m);
 void bind_aero(nb::module_& m);
 void bind_atmosphere(nb::module_& m);

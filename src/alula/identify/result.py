@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Literal
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
 
 from alula.base.arrays import Array
 from alula.base.messages import Message
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.figure import Figure
 
 Verdict = Literal["ok", "weak", "not_identifiable"]
 
@@ -69,7 +75,11 @@ class Series:
 
 @dataclass(frozen=True)
 class Identification:
-    """The result of one identification; statsmodels' words for what they know."""
+    """The result of one identification; statsmodels' words for what they know.
+
+    A parameter that is not identifiable has NaN for value and errors, and NaN in `covariance`.
+    labels: what a coefficient includes beyond aerodynamics ('including thrust').
+    """
 
     method: str
     parameters: tuple[Parameter, ...]
@@ -78,3 +88,86 @@ class Identification:
     covariance: Array  # of all parameters, in their order
     status: str
     messages: tuple[Message, ...] = ()
+    labels: Mapping[str, str] = field(default_factory=dict)
+
+    def __getitem__(self, name: str) -> Parameter:
+        """The parameter `name`; raises KeyError."""
+        for parameter in self.parameters:
+            if parameter.name == name:
+                return parameter
+        raise KeyError(name)
+
+    @property
+    def identifiable(self) -> bool:
+        """Whether the data determine every parameter."""
+        return all(p.verdict != "not_identifiable" for p in self.parameters)
+
+    @property
+    def params(self) -> pd.Series[float]:
+        """Values by name."""
+        return self._column([p.value for p in self.parameters])
+
+    @property
+    def bse(self) -> pd.Series[float]:
+        """Standard errors by name: coloured residuals and all that lies outside the fit."""
+        return self._column([p.se for p in self.parameters])
+
+    def cov_params(self) -> pd.DataFrame:
+        """Covariance of all parameters, by name in both directions."""
+        import pandas as pd
+
+        names = [p.name for p in self.parameters]
+        return pd.DataFrame(self.covariance, index=names, columns=names)
+
+    def conf_int(self) -> pd.DataFrame:
+        """The 95 % intervals by name, columns 'lower' and 'upper'."""
+        import pandas as pd
+
+        names = [p.name for p in self.parameters]
+        return pd.DataFrame(
+            [p.ci95 for p in self.parameters], index=names, columns=["lower", "upper"]
+        )
+
+    @property
+    def correlations(self) -> Array:
+        """Correlation of the estimates, (k, k); NaN where there is no estimate."""
+        se = np.sqrt(np.diag(self.covariance))
+        se = np.where(se > 0.0, se, np.nan)
+        out: Array = self.covariance / np.outer(se, se)
+        return out
+
+    @property
+    def resid(self) -> dict[str, Array]:
+        """Measured minus model by coefficient, the maneuvers learned from one after another."""
+        return {
+            name: np.concatenate(
+                [
+                    s.measured - s.model
+                    for s in self.series
+                    if s.coefficient == name and not s.held_out
+                ]
+            )
+            for name in self.fits
+        }
+
+    @property
+    def rsquared(self) -> dict[str, float]:
+        """R2 by coefficient, on the maneuvers learned from."""
+        return {name: fit.r2 for name, fit in self.fits.items()}
+
+    def summary(self) -> str:
+        """The result as plain text."""
+        from alula.identify.text import summary
+
+        return summary(self)
+
+    def plot(self) -> Figure:
+        """Measured and modeled coefficients over time, a matplotlib figure."""
+        from alula.identify.plot import plot
+
+        return plot(self)
+
+    def _column(self, values: list[float]) -> pd.Series[float]:
+        import pandas as pd
+
+        return pd.Series(values, index=[p.name for p in self.parameters], dtype="float64")

@@ -1,0 +1,255 @@
+#pragma once
+// Flight path reconstruction as a table: which unknowns are estimated, which sensors there are,
+// where they sit. Read-only while a filter runs; one instantiation serves every sensor set.
+// Source: van den Hoek 2017, Eq. (3) to (7); Dittrich 2016, Eq. (3.1) to (3.4).
+#include <alula/math/bounded.hpp>
+#include <alula/math/capacity.hpp>
+#include <alula/motion/point_kinematics.hpp>
+
+namespace alula {
+
+// Unknowns shared by all sensors. A scale error e makes the sensor read (1 + e) times the truth,
+// plus its bias.
+enum PathUnknown {
+  kBiasAx, kBiasAy, kBiasAz, kBiasP, kBiasQ, kBiasR,
+  kScaleAx, kScaleAy, kScaleAz, kScaleP, kScaleQ, kScaleR,
+  kWindNorth, kWindEast, kWindDown,
+  kPathUnknowns
+};
+
+enum class Quantity : int {
+  height, phi, theta, psi, airspeed,
+  alpha,         // vane: atan(w/u) of the local air velocity
+  alpha_linear,  // upwash on the angle at the inertial sensor, rotation added apart (v.d. Hoek (5))
+  beta,          // asin(v/V) of the local air velocity
+  beta_flank,    // vane on a vertical axis: atan(v/u)
+  beta_linear,   // as alpha_linear, for asin(v/V)
+  velocity_north, velocity_east, velocity_down, north, east,
+};
+
+// One sensor: reads reference + (1 + scale)(quantity - reference) + bias + noise. `position` is
+// from the inertial sensor, body axes [m]. Slots are state indices, -1 where a number is fixed.
+// For upwash the scale acts on the flow angle alone where the quantity is a `_linear` one.
+template <class T>
+struct PathSensor {
+  Quantity quantity = Quantity::height;
+  T position[3] = {0, 0, 0};
+  T variance = 1;
+  T reference = 0;
+  T scale = 0, bias = 0;
+  int scale_slot = -1, bias_slot = -1;
+};
+
+template <class T>
+struct PathModel {
+  int states = kMotionStates;     // all: motion, then constants
+  int motion = kMotionStates;     // 7, or 9 with position
+  int dynamic = kMotionStates;    // the first so many enter the rates (motion and inertial errors)
+  T gravity = T(9.80665);
+  int slot[kPathUnknowns];        // state index or -1
+  T fixed[kPathUnknowns] = {};    // value where there is no slot
+  bool wind = false;
+  T input_sigma[kInertialInputs] = {};
+  T walk[kMaxStates] = {};        // random walk of the constants, unit per square root of a second
+  Bounded<PathSensor<T>, kMaxOutputs> sensors;
+
+  PathModel() { for (int& s : slot) s = -1; }
+};
+
+// The value of an unknown under state x.
+template <class S, class T>
+inline S unknown(const PathModel<T>& model, const S* x, int k) {
+  return model.slot[k] >= 0 ? x[model.slot[k]] : S(model.fixed[k]);
+}
+
+// Inputs m (6) freed from bias and scale error. Dittrich 2016, Eq. (3.1), (3.2).
+template <class S, class T>
+inline void true_inputs(const PathModel<T>& model, const S* x, const T* measured, S* m) {
+  for (int i = 0; i < kInertialInputs; ++i) {
+    m[i] = S(measured[i]) - unknown(model, x, kBiasAx + i);
+    if (model.slot[kScaleAx + i] >= 0 || model.fixed[kScaleAx + i] != T(0))
+      m[i] = m[i] / (S(T(1)) + unknown(model, x, kScaleAx + i));
+  }
+}
+
+// What all sensors share at one instant: air velocity of the inertial sensor in body axes, rates.
+template <class S>
+struct PathAir {
+  S u, v, w, p, q, r;
+};
+
+// Air-relative velocity at the inertial sensor: v_B - R_BE wind.
+template <class S, class T>
+inline PathAir<S> path_air(const PathModel<T>& model, const S* y, const S* wind, const S* m) {
+  PathAir<S> a{y[kU], y[kV], y[kW], m[3], m[4], m[5]};
+  if (model.wind) {
+    S sp, cp, st, ct, sy, cy;
+    sincos(y[kPhi], sp, cp);
+    sincos(y[kTheta], st, ct);
+    sincos(y[kPsi], sy, cy);
+    const S along = wind[0] * cy + wind[1] * sy, across = wind[1] * cy - wind[0] * sy;
+    const S tilted = along * st + wind[2] * ct;
+    a.u -= along * ct - wind[2] * st;
+    a.v -= across * cp + tilted * sp;
+    a.w -= tilted * cp - across * sp;
+  }
+  return a;
+}
+
+// The quantity that a sensor would read without scale error and bias, at its own place: local
+// velocity v + w x r. For `_linear` angles also `induced`, the part that upwash leaves alone.
+template <class S, class T>
+inline S path_quantity(const PathSensor<T>& sensor, const S* y, const PathAir<S>& air, S& induced) {
+  const S x(sensor.position[0]), ry(sensor.position[1]), z(sensor.position[2]);
+  const S du = air.q * z - air.r * ry, dv = air.r * x - air.p * z, dw = air.p * ry - air.q * x;
+  induced = S(T(0));
+  switch (sensor.quantity) {
+    case Quantity::airspeed: {
+      const S u = air.u + du, v = air.v + dv, w = air.w + dw;
+      return sqrt(u * u + v * v + w * w);
+    }
+    case Quantity::alpha: return atan2(air.w + dw, air.u + du);
+    case Quantity::beta: {
+      const S u = air.u + du, v = air.v + dv, w = air.w + dw;
+      return atan2(v, sqrt(u * u + w * w));
+    }
+    case Quantity::beta_flank: return atan2(air.v + dv, air.u + du);
+    case Quantity::alpha_linear: {
+      induced = dw / sqrt(air.u * air.u + air.v * air.v + air.w * air.w);
+      return atan2(air.w, air.u);
+    }
+    case Quantity::beta_linear: {
+      induced = dv / sqrt(air.u * air.u + air.v * air.v + air.w * air.w);
+      return atan2(air.v, sqrt(air.u * air.u + air.w * air.w));
+    }
+    default: break;
+  }
+  if (sensor.quantity == Quantity::phi) return y[kPhi];
+  if (sensor.quantity == Quantity::theta) return y[kTheta];
+  if (sensor.quantity == Quantity::psi) return y[kPsi];
+
+  // Velocity or position in Earth axes of a point that is not the inertial sensor.
+  S sp, cp, st, ct, sy, cy;
+  const bool velocity = sensor.quantity == Quantity::velocity_north ||
+                        sensor.quantity == Quantity::velocity_east ||
+                        sensor.quantity == Quantity::velocity_down;
+  S bx = x, by = ry, bz = z;  // body components of the vector to rotate
+  if (velocity) { bx = y[kU] + du; by = y[kV] + dv; bz = y[kW] + dw; }
+  sincos(y[kPhi], sp, cp);
+  sincos(y[kTheta], st, ct);
+  const S side = by * sp + bz * cp;
+  if (sensor.quantity == Quantity::height) return y[kHeight] + bx * st - side * ct;
+  if (sensor.quantity == Quantity::velocity_down) return side * ct - bx * st;
+  sincos(y[kPsi], sy, cy);
+  const S forward = bx * ct + side * st, right = by * cp - bz * sp;
+  if (sensor.quantity == Quantity::velocity_north) return forward * cy - right * sy;
+  if (sensor.quantity == Quantity::velocity_east) return forward * sy + right * cy;
+  if (sensor.quantity == Quantity::north) return y[kNorth] + forward * cy - right * sy;
+  return y[kEast] + forward * sy + right * cy;
+}
+
+// The reading of sensor i under the whole state x.
+template <class S, class T>
+inline S path_output(const PathModel<T>& model, const PathSensor<T>& sensor, const S* x,
+                     const PathAir<S>& air) {
+  S induced;
+  const S true_value = path_quantity(sensor, x, air, induced);
+  const S scale = sensor.scale_slot >= 0 ? x[sensor.scale_slot] : S(sensor.scale);
+  const S bias = sensor.bias_slot >= 0 ? x[sensor.bias_slot] : S(sensor.bias);
+  const S reference(sensor.reference);
+  (void)model;
+  return true_value + scale * (true_value - reference) + induced + bias;
+}
+
+// Attitude readings may be a turn away from the continuous state.
+template <class T>
+inline T wrapped(Quantity quantity, T innovation) {
+  if (quantity != Quantity::phi && quantity != Quantity::psi) return innovation;
+  constexpr T turn = T(6.283185307179586476925);
+  return innovation - turn * std::nearbyint(innovation / turn);
+}
+
+// The readings of all sensors with their exact Jacobian H (sensors x states) at state x.
+// Directions: u v w phi theta psi, p q r, wind; scale and bias enter linearly.
+template <class T>
+inline void path_outputs_jacobian(const PathModel<T>& model, const T* x, const T* measured, T* z,
+                                  T (*H)[kMaxStates]) {
+  using D = Dual<T, 12>;
+  T m[kInertialInputs];
+  true_inputs(model, x, measured, m);
+  D y[kMotionStatesWithPosition], rates[kInertialInputs], wind[3];
+  y[kHeight] = D(x[kHeight]);
+  for (int i = 0; i < 6; ++i) y[kU + i] = D::variable(x[kU + i], i);
+  for (int i = kMotionStates; i < model.motion; ++i) y[i] = D(x[i]);
+  for (int i = 3; i < 6; ++i) rates[i] = D::variable(m[i], 3 + i);
+  for (int i = 0; i < 3; ++i) wind[i] = D::variable(unknown(model, x, kWindNorth + i), 9 + i);
+  const PathAir<D> air = path_air(model, y, wind, rates);
+
+  for (int s = 0; s < model.sensors.size(); ++s) {
+    const PathSensor<T>& sensor = model.sensors[s];
+    D induced;
+    const D quantity = path_quantity(sensor, y, air, induced);
+    const T scale = sensor.scale_slot >= 0 ? x[sensor.scale_slot] : sensor.scale;
+    const T bias = sensor.bias_slot >= 0 ? x[sensor.bias_slot] : sensor.bias;
+    const T change = quantity.value - sensor.reference;
+    z[s] = quantity.value + scale * change + induced.value + bias;
+    T* h = H[s];
+    for (int j = 0; j < model.states; ++j) h[j] = T(0);
+    T slope[12];
+    for (int j = 0; j < 12; ++j)
+      slope[j] = (T(1) + scale) * quantity.slope[j] + induced.slope[j];
+    for (int j = 0; j < 6; ++j) h[kU + j] = slope[j];
+    if (sensor.quantity == Quantity::height) h[kHeight] = T(1) + scale;
+    if (sensor.quantity == Quantity::north) h[kNorth] = T(1) + scale;
+    if (sensor.quantity == Quantity::east) h[kEast] = T(1) + scale;
+    for (int j = 0; j < 3; ++j) {  // m = (measured - bias)/(1 + e): dm/dbias, dm/de
+      const T gain = T(1) / (T(1) + unknown(model, x, kScaleP + j));
+      if (model.slot[kBiasP + j] >= 0) h[model.slot[kBiasP + j]] = -gain * slope[6 + j];
+      if (model.slot[kScaleP + j] >= 0) h[model.slot[kScaleP + j]] = -gain * m[3 + j] * slope[6 + j];
+      if (model.slot[kWindNorth + j] >= 0) h[model.slot[kWindNorth + j]] = slope[9 + j];
+    }
+    if (sensor.scale_slot >= 0) h[sensor.scale_slot] = change;
+    if (sensor.bias_slot >= 0) h[sensor.bias_slot] = T(1);
+  }
+}
+
+// The step of the motion states under measured inputs with its Jacobian F (motion x states).
+template <int N, class T>
+inline void path_step_jacobian(const PathModel<T>& model, T* x, const T* u0, const T* u1, T dt,
+                               T (*F)[kMaxStates]) {
+  T m0[kInertialInputs], m1[kInertialInputs], A[N][N], B[N][kInertialInputs];
+  true_inputs(model, x, u0, m0);
+  true_inputs(model, x, u1, m1);
+  point_step_jacobian<N>(x, m0, m1, model.gravity, dt, A, B);
+  for (int i = 0; i < N; ++i) {
+    for (int j = 0; j < N; ++j) F[i][j] = A[i][j];
+    for (int j = N; j < model.states; ++j) F[i][j] = T(0);
+  }
+  for (int k = 0; k < kInertialInputs; ++k) {
+    const T gain = T(1) / (T(1) + unknown(model, x, kScaleAx + k));
+    const int bias = model.slot[kBiasAx + k], scale = model.slot[kScaleAx + k];
+    // The two ends carry different readings; their mean is exact to the order of RK4's own error.
+    const T middle = T(0.5) * (m0[k] + m1[k]);
+    if (bias >= 0)
+      for (int i = 0; i < N; ++i) F[i][bias] = -gain * B[i][k];
+    if (scale >= 0)
+      for (int i = 0; i < N; ++i) F[i][scale] = -gain * middle * B[i][k];
+  }
+}
+
+// Q (motion x motion, upper) of one step: input noise through G at x, van den Hoek 2017, Eq. (2).
+template <class T>
+inline void path_input_noise(const PathModel<T>& model, const T* x, T dt, T (*Q)[kMotionStates]) {
+  T G[kMotionStates][kInertialInputs];
+  point_input_gain(x, G);
+  for (int i = 0; i < kMotionStates; ++i)
+    for (int j = 0; j < kInertialInputs; ++j) G[i][j] *= dt * model.input_sigma[j];
+  for (int i = 0; i < kMotionStates; ++i)
+    for (int j = i; j < kMotionStates; ++j) {
+      T s = T(0);
+      for (int k = 0; k < kInertialInputs; ++k) s += G[i][k] * G[j][k];
+      Q[i][j] = s;
+    }
+}
+
+}  // namespace alula

@@ -1,0 +1,301 @@
+"""The project file: logs, channels, maneuvers and what to do with them.
+
+`load_project` reads TOML; `Project.model_json_schema()` is the schema for editors. The layout is
+explained in docs/project_file.md.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, ValidationError, model_validator
+
+from alula.base.messages import BadInput, Message
+from alula.base.project_messages import check_units, expand, explain, read_toml
+from alula.base.units import to_si
+
+Repair = Literal["drop_duplicate_times", "drop_backward_times", "drop_ragged_rows"]
+Format = Literal["auto", "csv", "ascii", "npz", "mat", "hdf5", "parquet"]
+Source = Annotated[int, Field(ge=1)] | Annotated[str, Field(min_length=1)]
+Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
+Identifier = Annotated[str, Field(pattern=r"^[\w][\w .+-]*$", max_length=80)]
+
+
+class Strict(BaseModel):
+    """Unknown keys are errors and values do not change once they are read."""
+
+    model_config = ConfigDict(
+        extra="forbid", frozen=True, populate_by_name=True, allow_inf_nan=False, strict=True
+    )
+
+
+class TimeSpec(Strict):
+    """Time stamps of one channel that has its own, from the file itself."""
+
+    source: Source = Field(alias="from")
+    column: int | None = Field(default=None, ge=1)
+    unit: str = "s"
+    scale: float = 1.0
+    offset: float = 0.0
+
+
+class ChannelSpec(Strict):
+    """Where a channel comes from: value_SI = unit(sign * (scale * x + offset))."""
+
+    source: Source | list[Source] | None = Field(
+        default=None, alias="from", description="a column name, a 1-based column, or several"
+    )
+    column: int | None = Field(
+        default=None, ge=1, description="1-based column of the matrix that 'from' names"
+    )
+    weights: list[float] | None = Field(default=None, description="one for each of 'from'")
+    constant: float | None = Field(default=None, description="a value instead of a recording")
+    unit: str | None = Field(default=None, description="default: the unit the file itself states")
+    scale: float = Field(default=1.0, description="in the source's unit")
+    offset: float = Field(default=0.0, description="in the source's unit")
+    sign: Literal[1, -1] = 1
+    table: list[Pair] | None = Field(
+        default=None, description="calibration: [source, unit] pairs, linear between"
+    )
+    delay_s: float = Field(
+        default=0.0, description="the sample was true this long before its stamp"
+    )
+    time: str | TimeSpec | None = Field(default=None, description="default: the channel 't'")
+    fill_values: list[float] | None = Field(default=None, description="values that mean 'no data'")
+    confirmed: bool = Field(
+        default=False, description="the unit is right although the values look as if it were not"
+    )
+
+    @model_validator(mode="after")
+    def _one_source(self) -> ChannelSpec:
+        if (self.source is None) == (self.constant is None):
+            raise ValueError("either 'from' or 'constant'|both or neither of them")
+        if self.weights is not None and len(self.weights) != len(self.sources):
+            raise ValueError(
+                f"one weight for each of the {len(self.sources)} sources|{len(self.weights)}"
+            )
+        if self.column is not None and not isinstance(self.source, str):
+            raise ValueError("'from' naming a matrix when 'column' is given|no matrix name")
+        if self.table is not None:
+            x = [pair[0] for pair in self.table]
+            if len(x) < 2 or any(b <= a for a, b in pairwise(x)):
+                raise ValueError(
+                    "a table of two or more rows with increasing source values|" + str(x)
+                )
+        return self
+
+    @property
+    def sources(self) -> tuple[int | str, ...]:
+        """The sources as a tuple; empty for a constant."""
+        if self.source is None:
+            return ()
+        return tuple(self.source) if isinstance(self.source, list) else (self.source,)
+
+
+class LogSpec(Strict):
+    """One log file and how to read it."""
+
+    id: Identifier
+    path: Path = Field(strict=False)
+    format: Format = "auto"
+    variable: str | None = Field(
+        default=None, description="matrix, structure, dataset or group inside the file"
+    )
+    separator: str | None = Field(default=None, min_length=1, max_length=1)
+    decimal: Literal[".", ","] | None = None
+    encoding: str | None = None
+    header_row: int | None = Field(default=None, ge=0, description="line number; 0: no header")
+    unit_row: int | None = Field(default=None, ge=0, description="line number; 0: no unit row")
+    skip_rows: int = Field(default=0, ge=0, description="lines to pass over at the top")
+    columns: list[str] | None = Field(default=None, description="names when there is no header")
+    fill_values: list[float] | None = Field(default=None, description="values that mean 'no data'")
+    repair: list[Repair] = Field(default=[], description="what may be dropped, and is counted")
+    channels: dict[str, ChannelSpec] = Field(default={}, description="for this log only")
+
+
+class ManeuverSpec(Strict):
+    """A window of a log."""
+
+    id: Identifier
+    log: str
+    kind: str = ""
+    start: float
+    end: float
+    aspect: Literal["longitudinal", "lateral", "both"] = "both"
+    configuration: dict[str, str] = {}
+    held_out: bool = False
+    on_gap: Literal["refuse", "split"] = "refuse"
+
+    @model_validator(mode="after")
+    def _order(self) -> ManeuverSpec:
+        if self.end <= self.start:
+            raise ValueError(f"'end' after 'start'|{self.start:g} to {self.end:g} s")
+        return self
+
+
+class Quantity(Strict):
+    """Base of entries that state their numbers in a unit; none means SI."""
+
+    unit: str | None = None
+
+    def in_si(self, value: float) -> float:
+        """`value` by the scale of the unit (an offset, as of degC, does not apply)."""
+        return value * to_si(self.unit).scale if self.unit else value
+
+
+class NoiseSpec(Quantity):
+    """Standard deviation of an inertial sensor's white noise per sample."""
+
+    sigma: float = Field(ge=0)
+
+    @property
+    def sigma_si(self) -> float:
+        """The standard deviation, SI."""
+        return self.in_si(self.sigma)
+
+
+class UnknownSpec(Quantity):
+    """One unknown of the reconstruction. prior: standard deviation; walk: per square root of s."""
+
+    state: Literal["constant", "walk", "off"] = "constant"
+    value: float = 0.0
+    prior: float | None = Field(default=None, gt=0)
+    walk: float | None = Field(default=None, ge=0)
+
+
+class SensorSpec(Quantity):
+    """One measured channel of the reconstruction."""
+
+    sigma: float | None = Field(default=None, gt=0)
+    use: bool = True
+    form: str | None = None
+    reference: Literal["zero", "first"] = "zero"
+
+    @property
+    def sigma_si(self) -> float | None:
+        """The standard deviation, SI; None where the method's default applies."""
+        return None if self.sigma is None else self.in_si(self.sigma)
+
+
+class ReconstructSpec(Strict):
+    """How the flight path is reconstructed."""
+
+    filter: Literal["ekf", "ukf", "ml", "none"] = "ekf"
+    gravity: float = Field(default=9.80665, gt=0)
+    share: Literal["all", "log", "maneuver"] = "all"
+    initial_state: Literal["estimate", "measured"] = "estimate"
+    smoothing_window_s: float = Field(default=0.0, ge=0, description="0: the method chooses")
+    imu: dict[Literal["ax", "ay", "az", "p", "q", "r"], NoiseSpec] = {}
+    unknowns: dict[str, UnknownSpec] = {}
+    sensors: dict[str, SensorSpec] = {}
+
+
+class IdentifySpec(Strict):
+    """What is identified, and how."""
+
+    method: str = "ee"
+    coefficients_from: Literal["motion", "recorded"] = "motion"
+    models: dict[str, str] = {}
+    options: dict[str, float | str | bool | list[float] | dict[str, float]] = {}
+
+
+class Project(Strict):
+    """A project file as it was read; paths are absolute."""
+
+    schema_: Literal["alula.project/1"] = Field(alias="schema")
+    name: str
+    aircraft: Path | None = Field(default=None, strict=False)
+    logs: list[LogSpec] = Field(min_length=1)
+    channels: dict[str, ChannelSpec] = {}
+    maneuvers: list[ManeuverSpec] = []
+    reconstruct: ReconstructSpec = ReconstructSpec()
+    identify: IdentifySpec = IdentifySpec()
+
+    _path: Path = PrivateAttr(default=Path())
+    _sha256: str = PrivateAttr(default="")
+
+    @property
+    def path(self) -> Path:
+        """The file that was read."""
+        return self._path
+
+    @property
+    def sha256(self) -> str:
+        """Hexadecimal SHA-256 of the file that was read."""
+        return self._sha256
+
+    def log(self, id: str) -> LogSpec:
+        """The log of that id (the maneuvers' references are checked on loading)."""
+        return next(log for log in self.logs if log.id == id)
+
+    def channels_of(self, log: LogSpec) -> dict[str, ChannelSpec]:
+        """The channels of one log: the project's, replaced by the log's own where it has them."""
+        return {**self.channels, **log.channels}
+
+
+def load_project(path: Path | str) -> Project:
+    """Read and check a project file; paths in it become absolute, from its folder.
+
+    Raises BadInput with one message for everything that is wrong: file, key, expected, found.
+    """
+    path = Path(path)
+    text, tree, sha256 = read_toml(path)
+    _resolve_paths(tree, path)
+    try:
+        project = Project.model_validate(tree)
+    except ValidationError as error:
+        raise BadInput(*explain(error, path, text)) from None
+    problems = _references(project, path) + check_units(project, path)
+    if problems:
+        raise BadInput(*problems)
+    project._path = path.resolve()
+    project._sha256 = sha256
+    return project
+
+
+def _resolve_paths(tree: dict[str, Any], path: Path) -> None:
+    if isinstance(tree.get("aircraft"), str):
+        tree["aircraft"] = expand(tree["aircraft"], path, "aircraft")
+    logs = tree.get("logs")
+    for i, log in enumerate(logs if isinstance(logs, list) else []):
+        if isinstance(log, dict) and isinstance(log.get("path"), str):
+            log["path"] = expand(log["path"], path, f"logs[{i + 1}].path")
+
+
+def _references(project: Project, path: Path) -> list[Message]:
+    """Ids that are double, maneuvers of logs that are not there, time bases that are not mapped."""
+    problems = []
+
+    def error(code: str, key: str, expected: str, found: str, do: str) -> None:
+        problems.append(Message(code, "error", f"{path}: {key}", expected, found, do))
+
+    for key, ids in (
+        ("logs", [log.id for log in project.logs]),
+        ("maneuvers", [maneuver.id for maneuver in project.maneuvers]),
+    ):
+        for id in sorted({id for id in ids if ids.count(id) > 1}):
+            error("duplicate_id", key, "each id once", f"'{id}' {ids.count(id)} times", "Rename.")
+    known = [log.id for log in project.logs]
+    for i, maneuver in enumerate(project.maneuvers):
+        if maneuver.log not in known:
+            error(
+                "unknown_log",
+                f"maneuvers[{i + 1}].log",
+                f"one of {', '.join(known)}",
+                f"'{maneuver.log}'",
+                "Name a log of this project.",
+            )
+    for log in project.logs:
+        channels = project.channels_of(log)
+        for name, channel in channels.items():
+            if isinstance(channel.time, str) and channel.time not in channels:
+                error(
+                    "unknown_time_channel",
+                    f"channels.{name}.time",
+                    f"one of the channels: {', '.join(channels)}",
+                    f"'{channel.time}'",
+                    "Map that channel, or give time = {from = ..., unit = 's'}.",
+                )
+    return problems

@@ -1,0 +1,169 @@
+"""What the project file's reader says: TOML and schema errors in words, units, paths.
+
+The aircraft file's reader says the same; nothing here knows the keys of either.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+import tomllib
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel, ValidationError
+
+from alula.base.messages import BadInput, Message, refuse
+from alula.base.units import to_si
+
+
+def read_toml(path: Path) -> tuple[str, dict[str, Any], str]:
+    """Text, tree and SHA-256 of a TOML file; raises BadInput if it is not one."""
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise refuse(
+            "file_not_readable",
+            where=str(path),
+            expected="a TOML file",
+            found=error.strerror or str(error),
+            do="Check the path.",
+        ) from None
+    try:
+        text = data.decode("utf-8-sig")
+        tree = tomllib.loads(text)
+    except (UnicodeDecodeError, tomllib.TOMLDecodeError, RecursionError) as error:
+        raise refuse(
+            "not_toml",
+            where=str(path),
+            expected="TOML in UTF-8",
+            found=str(error),
+            do="Mend the line named; strings need quotes, tables need [brackets].",
+        ) from None
+    return text, tree, hashlib.sha256(data).hexdigest()
+
+
+def expand(text: str, file: Path, key: str) -> str:
+    """`text` with ${VARIABLES} replaced, absolute from the folder of `file`."""
+
+    def value(match: re.Match[str]) -> str:
+        name = match.group(1)
+        if name not in os.environ:
+            raise refuse(
+                "variable_not_set",
+                where=f"{file}: {key}",
+                expected=f"the environment variable {name} that '{text}' names",
+                found="it is not set",
+                do=f"Set it: export {name}=/the/folder",
+            )
+        return os.environ[name]
+
+    expanded = Path(re.sub(r"\$\{(\w+)\}", value, text)).expanduser()
+    return str((file.parent / expanded).absolute())
+
+
+def explain(error: ValidationError, path: Path, text: str = "") -> list[Message]:
+    """One message for each thing that pydantic found, in the words of the file."""
+    messages: list[Message] = []
+    for item in error.errors(include_url=False):
+        key = _key(item["loc"])
+        kind, context, found = item["type"], item.get("ctx", {}), _short(item["input"])
+        expected, do, code = item["msg"][:1].lower() + item["msg"][1:], "Correct it.", "bad_value"
+        if kind == "missing":
+            code, found = "missing_key", "no such key"
+            expected, do = f"the key '{item['loc'][-1]}'", "Add it."
+        elif kind == "extra_forbidden":
+            code, found = "unknown_key", f"'{item['loc'][-1]}'"
+            expected, do = "a key that is known", "Remove it or mend its spelling."
+            near = get_close_matches(str(item["loc"][-1]), _keys(error), n=1, cutoff=0.7)
+            do = f"Did you mean '{near[0]}'?" if near else do
+        elif kind == "literal_error":
+            expected = context["expected"]
+        elif kind == "value_error":
+            reason, _, got = str(context["error"]).partition("|")
+            expected, found = reason, got or found
+        elif kind.endswith("_type"):
+            expected = expected.removeprefix("input should be ")
+        else:
+            expected = expected.removeprefix("input should ").removeprefix("input ")
+        message = Message(
+            code, "error", f"{path}: {key}{_line(text, item['loc'])}", expected, found, do
+        )
+        if message not in messages:
+            messages.append(message)
+    return messages
+
+
+def _keys(error: ValidationError) -> list[str]:
+    """Keys of every schema under the one that failed, for 'did you mean'."""
+    found: set[str] = set()
+
+    def walk(schema: type[BaseModel]) -> None:
+        for name, field in schema.model_fields.items():
+            found.add(field.alias or name)
+            for inner in _models(field.annotation):
+                walk(inner)
+
+    def _models(annotation: Any) -> list[type[BaseModel]]:
+        if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+            return [annotation]
+        return [m for a in getattr(annotation, "__args__", ()) for m in _models(a)]
+
+    def subclasses(base: type[BaseModel]) -> list[type[BaseModel]]:
+        return [c for s in base.__subclasses__() for c in (s, *subclasses(s))]
+
+    for schema in subclasses(BaseModel):
+        if schema.__name__ == error.title or schema.model_config.get("title") == error.title:
+            walk(schema)
+    return sorted(found)
+
+
+def _key(location: tuple[int | str, ...]) -> str:
+    """'logs[1].channels.alpha.unit': list positions count from one, union branches left out."""
+    text = ""
+    for part in location:
+        if isinstance(part, int):
+            text += f"[{part + 1}]"
+        elif not re.search(r"[\[(]|^(int|str|float|bool|TimeSpec|list|dict)$", part):
+            text += f".{part}" if text else part
+    return text or "the file"
+
+
+def _line(text: str, location: tuple[int | str, ...]) -> str:
+    """', line 12' where the last key of the location stands in the file exactly once."""
+    names = [part for part in location if isinstance(part, str)]
+    if not text or not names:
+        return ""
+    pattern = re.compile(rf"(?<![\w.]){re.escape(names[-1])}\s*=")
+    lines = [i for i, line in enumerate(text.splitlines(), 1) if pattern.search(line)]
+    return f", line {lines[0]}" if len(lines) == 1 else ""
+
+
+def _short(value: object) -> str:
+    text = repr(value) if isinstance(value, str | int | float | bool) else type(value).__name__
+    text = {"dict": "a table", "list": "a list", "NoneType": "nothing"}.get(text, text)
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def check_units(value: object, path: Path, key: str = "") -> list[Message]:
+    """Messages for every unknown unit in a model and the models it holds."""
+    problems: list[Message] = []
+    if isinstance(value, BaseModel):
+        for name in type(value).model_fields:
+            inner = getattr(value, name)
+            if name == "unit" and isinstance(inner, str):
+                try:
+                    to_si(inner, where=f"{path}: {key}.unit")
+                except BadInput as error:
+                    problems += error.messages
+            else:
+                problems += check_units(inner, path, f"{key}.{name}" if key else name)
+    elif isinstance(value, dict):
+        for name, inner in value.items():
+            problems += check_units(inner, path, f"{key}.{name}")
+    elif isinstance(value, list):
+        for i, inner in enumerate(value):
+            problems += check_units(inner, path, f"{key}[{i + 1}]")
+    return problems

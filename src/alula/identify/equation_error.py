@@ -1,0 +1,269 @@
+"""Equation error: regress each aerodynamic coefficient on motion and controls.
+
+Dittrich 2016, Eq. (3.46) to (3.48); van den Hoek 2017, Eq. (28) to (31). Error bars: coloured
+residuals (coloured.py), and for each source of uncertainty outside the regression (reconstruction,
+thrust) the change of the estimate when that source is one standard deviation off, squared and
+added.
+"""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+
+from alula.base.arrays import Array, frozen
+from alula.base.messages import Message, refuse
+from alula.identify.coefficients import CoefficientData
+from alula.identify.regression import Block, Regression, Weighting, regress
+from alula.identify.result import Fit, Identification, Parameter, Series
+from alula.identify.typical import constant_name
+from alula.identify.verdict import assess
+
+Design = Callable[[str, str, Mapping[str, Array]], tuple[Sequence[str], Array]]
+
+LONGITUDINAL = frozenset({"CX", "CZ", "CD", "CL", "Cm"})
+
+
+def model_design(
+    coefficient: str, formula: str, variables: Mapping[str, Array]
+) -> tuple[Sequence[str], Array]:
+    """Names and regressors (n, k) of a formula, by the model grammar."""
+    regressors: Design = importlib.import_module("alula.model").regressors
+    return regressors(coefficient, formula, variables)
+
+
+def identify_equation_error(
+    data: Sequence[CoefficientData],
+    models: Mapping[str, str],
+    *,
+    design: Design = model_design,
+    weighting: Weighting = "residual",
+    common_constant: bool = False,
+    scales: Mapping[str, float] | None = None,
+    truth: Mapping[str, float] | None = None,
+) -> Identification:
+    """Derivatives of every coefficient in `models`, shared by all maneuvers that serve it.
+
+    data: one entry per maneuver, held-out ones among them. models: formula by coefficient, e.g.
+    {"Cm": "1 + alpha + qhat + de"}. weighting: of maneuvers, see regression.py. common_constant:
+    one constant term for all maneuvers instead of one each. scales: standard errors that are good
+    enough, by parameter name. truth: true values where they are known, carried along.
+
+    Only maneuvers of the coefficient's aspect are used. A held-out maneuver is predicted with
+    the derivatives of the others; its constant term, which belongs to its trim, is taken from
+    itself. Raises BadInput for a coefficient that the data do not have, a formula that cannot be
+    read, no maneuver to learn from, or no more samples than parameters.
+    """
+    if not models:
+        raise refuse(
+            "no_model",
+            where="models",
+            expected="a formula for at least one coefficient",
+            found="none",
+            do='State one, e.g. Cm = "1 + alpha + qhat + de".',
+        )
+    fits: dict[str, Fit] = {}
+    parameters: list[Parameter] = []
+    series: list[Series] = []
+    messages: list[Message] = [m for item in data for m in item.messages]
+    parts: list[Array] = []
+    changes: list[dict[str, Array]] = []
+    for coefficient, formula in models.items():
+        serving = _serving(data, coefficient)
+        learn = [item for item in serving if not item.maneuver.held_out]
+        task = _Task(coefficient, formula, design, tuple(learn), common_constant)
+        fit = regress(task.names, task.blocks(None), weighting)
+        change = {
+            source: fit.refit(task.blocks(source)) - fit.solution.value
+            for source in dict.fromkeys(p.source for item in learn for p in item.perturbed)
+        }
+        added = sum((np.outer(d, d) for d in change.values()), np.zeros((len(task.names),) * 2))
+        assessed, remarks = assess(coefficient, fit, added, scales or {}, truth or {})
+        parameters += assessed
+        messages += remarks
+        parts.append(fit.coloured.covariance)
+        changes.append(change)
+        shown = _series(task, fit, serving)
+        series += shown
+        fits[coefficient] = _quality(task, fit, shown)
+    return Identification(
+        method="equation error",
+        parameters=tuple(parameters),
+        fits=fits,
+        series=tuple(series),
+        covariance=_joint(parts, changes, parameters),
+        status=_status(parameters),
+        messages=tuple(messages),
+        labels={k: v for item in data for k, v in (item.labels or {}).items() if k in models},
+    )
+
+
+class _Task:
+    """One coefficient's formula on its maneuvers: parameter names and regressor blocks."""
+
+    def __init__(
+        self,
+        coefficient: str,
+        formula: str,
+        design: Design,
+        learn: tuple[CoefficientData, ...],
+        common: bool,
+    ) -> None:
+        self.coefficient, self.formula, self.design, self.learn = (
+            coefficient,
+            formula,
+            design,
+            learn,
+        )
+        terms, _ = design(coefficient, formula, learn[0].variables)
+        self.terms = tuple(terms)
+        self.constant = constant_name(coefficient)
+        self.split = self.constant in self.terms and len(learn) > 1 and not common
+        self.shared = tuple(n for n in self.terms if n != self.constant or not self.split)
+        own = tuple(f"{self.constant}[{d.maneuver.id}]" for d in learn) if self.split else ()
+        self.names = (*own, *self.shared)
+
+    def terms_of(self, variables: Mapping[str, Array], n: int) -> Array:
+        """The formula's regressors (n, k) in the order of `terms`."""
+        names, matrix = self.design(self.coefficient, self.formula, variables)
+        if tuple(names) != self.terms:
+            raise AssertionError("a formula must give the same terms for every maneuver")
+        return np.broadcast_to(matrix, (n, len(self.terms)))
+
+    def blocks(self, source: str | None) -> list[Block]:
+        """One block per maneuver, as it was or as `source` would have had it."""
+        out = []
+        for i, item in enumerate(self.learn):
+            coefficients, variables = item.coefficients, item.variables
+            for way in item.perturbed:
+                if way.source == source:
+                    coefficients, variables = way.coefficients, way.variables
+            measured = coefficients[self.coefficient]
+            matrix = self.terms_of(variables, len(measured))
+            if self.split:
+                own = np.zeros((len(measured), len(self.learn)))
+                own[:, i] = 1.0
+                keep = [j for j, name in enumerate(self.terms) if name in self.shared]
+                matrix = np.hstack([own, matrix[:, keep]])
+            out.append(Block(matrix, measured))
+        return out
+
+
+def _serving(data: Sequence[CoefficientData], coefficient: str) -> list[CoefficientData]:
+    """The maneuvers of the coefficient's aspect; refuses where none is left to learn from."""
+    aspect = "longitudinal" if coefficient in LONGITUDINAL else "lateral"
+    serving = [item for item in data if item.maneuver.aspect in (aspect, "both")]
+    if not any(not item.maneuver.held_out for item in serving):
+        raise refuse(
+            "no_maneuver",
+            where=f"model of {coefficient}",
+            expected=f"a {aspect} maneuver (or 'both') that is not held out",
+            found=", ".join(f"{d.maneuver.id} ({d.maneuver.aspect})" for d in data) or "none",
+            do="Set a maneuver's aspect or held_out, or take the model out.",
+        )
+    for item in serving:
+        if coefficient not in item.coefficients:
+            raise refuse(
+                "missing_coefficient",
+                where=f"maneuver {item.maneuver.id}",
+                expected=f"coefficient '{coefficient}'",
+                found=", ".join(item.coefficients),
+                do="Map it in [channels], or model one of those found.",
+            )
+    return serving
+
+
+def _series(task: _Task, fit: Regression, serving: Sequence[CoefficientData]) -> list[Series]:
+    value = dict(zip(fit.names, fit.solution.value, strict=True))
+    out = []
+    for item in serving:
+        measured = item.coefficients[task.coefficient]
+        own = f"{task.constant}[{item.maneuver.id}]"
+        used = [value.get(own, 0.0) if n not in value else value[n] for n in task.terms]
+        model = task.terms_of(item.variables, len(measured)) @ np.array(used)
+        if item.maneuver.held_out and task.constant in task.terms:
+            model = model + np.mean(measured - model)
+        out.append(
+            Series(
+                coefficient=task.coefficient,
+                maneuver=item.maneuver.id,
+                t=frozen(item.t),
+                measured=frozen(measured),
+                model=frozen(model),
+                held_out=item.maneuver.held_out,
+            )
+        )
+    return out
+
+
+def _quality(task: _Task, fit: Regression, shown: Sequence[Series]) -> Fit:
+    """R2 and relative rms; RRMSE is rms over the range of the measured (van den Hoek, Table 8)."""
+    learned = [s for s in shown if not s.held_out]
+    held = [s for s in shown if s.held_out]
+    residuals = fit.residuals
+    squares = sum(float(v @ v) for v in residuals)
+    steps = sum(float(np.sum(np.diff(v) ** 2)) for v in residuals)
+    measured = np.concatenate([s.measured for s in learned])
+    spread = float(np.ptp(measured))
+    return Fit(
+        coefficient=task.coefficient,
+        formula=task.formula,
+        r2=r_squared(learned),
+        rrmse=float(np.sqrt(squares / len(measured))) / spread if spread > 0.0 else np.nan,
+        n=len(measured),
+        n_held_out=sum(len(s.measured) for s in held),
+        r2_held_out=r_squared(held),
+        durbin_watson=steps / squares if squares > 0.0 else np.nan,
+    )
+
+
+def r_squared(shown: Sequence[Series]) -> float:
+    """1 - residual over total sum of squares, each maneuver about its own mean.
+
+    About one common mean a difference of trim would count as explained. NaN without variation.
+    """
+    total = sum(float(np.sum((s.measured - s.measured.mean()) ** 2)) for s in shown)
+    left = sum(float(np.sum((s.measured - s.model) ** 2)) for s in shown)
+    return 1.0 - left / total if total > 0.0 else np.nan
+
+
+def _joint(
+    parts: Sequence[Array], changes: Sequence[Mapping[str, Array]], parameters: Sequence[Parameter]
+) -> Array:
+    """Covariance of all parameters; NaN for those that are not identifiable.
+
+    Coefficients share what was added from outside (one bias changes them all); the residuals of
+    different coefficients are taken as independent.
+    """
+    sizes = [len(p) for p in parts]
+    ends = np.cumsum(sizes)
+    out = np.zeros((ends[-1], ends[-1]))
+    for part, end in zip(parts, ends, strict=True):
+        out[end - len(part) : end, end - len(part) : end] = part
+    for source in dict.fromkeys(s for change in changes for s in change):
+        whole = np.concatenate(
+            [c.get(source, np.zeros(n)) for c, n in zip(changes, sizes, strict=True)]
+        )
+        out += np.outer(whole, whole)
+    lost = [i for i, p in enumerate(parameters) if p.verdict == "not_identifiable"]
+    out[lost, :] = np.nan
+    out[:, lost] = np.nan
+    return frozen(out)
+
+
+def _status(parameters: Sequence[Parameter]) -> str:
+    lost = [p.name for p in parameters if p.verdict == "not_identifiable"]
+    weak = [p.name for p in parameters if p.verdict == "weak"]
+    if lost:
+        return (
+            f"not identifiable: {', '.join(lost)}. Fly a maneuver that excites them on their own, "
+            "or take a term out of the formula."
+        )
+    if weak:
+        return (
+            f"identified; weak: {', '.join(weak)}. Their error bars are over half the value: "
+            "more or longer maneuvers would narrow them."
+        )
+    return "identified: every parameter is resolved"

@@ -1,0 +1,108 @@
+"""One linear model fitted to several maneuvers: the regression that every method here shares.
+
+Maneuvers are weighted by the inverse of their residual variance (feasible weighted least squares,
+Dittrich 2016, Eq. (3.35)), found from an unweighted fit. The ratio of variances is bounded, so that
+one quiet maneuver cannot silence the others.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from alula.base.arrays import Array
+from alula.identify.coloured import Coloured, coloured_covariance
+from alula.identify.least_squares import LeastSquares, least_squares
+
+Weighting = Literal["residual", "equal"]
+LARGEST_RATIO = 10.0  # of the maneuvers' residual variances, as weights see them
+
+
+@dataclass(frozen=True)
+class Block:
+    """One maneuver's share: regressors (n, k) and measured coefficient (n,)."""
+
+    regressors: Array
+    measured: Array
+
+
+@dataclass(frozen=True)
+class Regression:
+    """A fitted linear model. weights: per block. residuals: per block, unweighted."""
+
+    names: tuple[str, ...]
+    blocks: tuple[Block, ...]
+    weights: tuple[float, ...]
+    solution: LeastSquares
+    residuals: tuple[Array, ...]
+    coloured: Coloured
+
+    def refit(self, blocks: Sequence[Block]) -> Array:
+        """The value (k,) that other data of the same shape give under the same weights.
+
+        Combinations that this fit did not resolve stay at zero.
+        """
+        scale, null = self.solution.scale, self.solution.null
+        rows = _stack([b.regressors for b in blocks], self.weights) / scale
+        measured = _stack([b.measured for b in blocks], self.weights)
+        basis = np.linalg.svd(null, full_matrices=True)[0][:, null.shape[1] :]
+        unit = np.linalg.lstsq(rows @ basis, measured, rcond=None)[0]
+        value: Array = (basis @ unit) / scale
+        return value
+
+
+def regress(
+    names: Sequence[str], blocks: Sequence[Block], weighting: Weighting = "residual"
+) -> Regression:
+    """Fit one model to all blocks.
+
+    names: (k,) of the parameters. Raises BadInput where there are no more samples than parameters.
+    """
+    equal = (1.0,) * len(blocks)
+    solution, residuals = _solve(blocks, equal)
+    weights = equal
+    if weighting == "residual" and len(blocks) > 1:
+        weights = _weights(residuals, len(names))
+        solution, residuals = _solve(blocks, weights)
+    weighted = [
+        (np.sqrt(w) * b.regressors, np.sqrt(w) * v)
+        for w, b, v in zip(weights, blocks, residuals, strict=True)
+    ]
+    return Regression(
+        names=tuple(names),
+        blocks=tuple(blocks),
+        weights=weights,
+        solution=solution,
+        residuals=residuals,
+        coloured=coloured_covariance(weighted, solution.dispersion),
+    )
+
+
+def _solve(
+    blocks: Sequence[Block], weights: Sequence[float]
+) -> tuple[LeastSquares, tuple[Array, ...]]:
+    lengths = [len(b.measured) for b in blocks]
+    solution = least_squares(
+        np.vstack([b.regressors for b in blocks]),
+        np.concatenate([b.measured for b in blocks]),
+        np.repeat(np.asarray(weights), lengths),
+    )
+    return solution, tuple(np.split(solution.residual, np.cumsum(lengths)[:-1]))
+
+
+def _weights(residuals: Sequence[Array], count: int) -> tuple[float, ...]:
+    """Inverse residual variances, the smallest variance's being 1."""
+    samples = sum(len(v) for v in residuals)
+    share = 1.0 - count / samples  # each block gives up parameters in proportion to its length
+    variances = np.array([float(v @ v) / (len(v) * share) for v in residuals])
+    if not (variances > 0.0).all():
+        return (1.0,) * len(residuals)
+    ratio = np.minimum(variances / variances.min(), LARGEST_RATIO)
+    return tuple(float(1.0 / r) for r in ratio)
+
+
+def _stack(parts: Sequence[Array], weights: Sequence[float]) -> Array:
+    return np.concatenate([np.sqrt(w) * x for w, x in zip(weights, parts, strict=True)])

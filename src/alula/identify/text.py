@@ -1,0 +1,57 @@
+"""The result of an identification as plain text, in the layout that statsmodels readers know."""
+
+from __future__ import annotations
+
+from alula.identify.result import Identification, Parameter
+
+_WIDTH = 100
+
+
+def summary(result: Identification) -> str:
+    """Fits, then parameters with both standard errors, interval and verdict, then ties."""
+    lines = ["Identification by " + result.method, "=" * _WIDTH]
+    lines.append(
+        f"{'coefficient':<12}{'R2':>8}{'RRMSE':>9}{'D-W':>7}{'samples':>9}"
+        f"{'R2 held out':>13}{'held out':>10}  model"
+    )
+    for name, fit in result.fits.items():
+        held = f"{fit.r2_held_out:>13.4f}" if fit.n_held_out else f"{'-':>13}"
+        label = f" ({result.labels[name]})" if name in result.labels else ""
+        lines.append(
+            f"{name:<12}{fit.r2:>8.4f}{fit.rrmse:>9.2%}{fit.durbin_watson:>7.2f}{fit.n:>9d}"
+            f"{held}{fit.n_held_out:>10d}  {fit.formula}{label}"
+        )
+    lines += ["-" * _WIDTH, _header(result), "-" * _WIDTH]
+    lines += [_row(p) for p in result.parameters]
+    lines += ["=" * _WIDTH, result.status]
+    lines.append(
+        "se: coloured residuals and the uncertainty of what came before; se white: as if residuals "
+        "were white;\nthe interval takes Student's t with the degrees of freedom of coloured "
+        "residuals."
+    )
+    return "\n".join(lines)
+
+
+def _header(result: Identification) -> str:
+    truth = any(p.truth is not None for p in result.parameters)
+    return (
+        f"{'parameter':<18}{'value':>11}{'se':>11}{'se white':>11}{'[0.025':>11}{'0.975]':>11}"
+        f"{'unit':>9}{'VIF':>8}" + (f"{'truth':>11}" if truth else "") + "  verdict"
+    )
+
+
+def _row(p: Parameter) -> str:
+    truth = "" if p.truth is None else f"{p.truth:>11.5g}"
+    unit = "" if p.unit == "1" else p.unit
+    if p.verdict == "not_identifiable":
+        gap = f"{'-':>11}" * 5
+        tied = " ".join(
+            f"{'+' if tie.weight >= 0 else '-'} {abs(tie.weight):.3g} {tie.name}"
+            for tie in p.tied_to
+        )
+        words = "not identifiable" + (f": only {p.name} {tied}" if tied else ": not excited")
+        return f"{p.name:<18}{gap}{unit:>9}{p.vif:>8.3g}{truth}  {words}"
+    return (
+        f"{p.name:<18}{p.value:>11.5g}{p.se:>11.3g}{p.se_white:>11.3g}{p.ci95[0]:>11.5g}"
+        f"{p.ci95[1]:>11.5g}{unit:>9}{p.vif:>8.3g}{truth}  {p.verdict}"
+    )

@@ -1,0 +1,133 @@
+"""The whole page: sections in reading order, style and script inside, nothing from outside."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+from importlib.resources import files
+
+from alula.report.figures import FigureStore
+from alula.report.html import Html, css_string, join, tag
+from alula.report.input import ReportInput
+from alula.report.sections.coefficients import coefficients
+from alula.report.sections.correlation import correlation
+from alula.report.sections.log_card import log_cards
+from alula.report.sections.maneuvers import maneuvers
+from alula.report.sections.notes import messages, provenance
+from alula.report.sections.parameters import parameters
+from alula.report.sections.reconstruction import reconstruction
+from alula.report.sections.summary import header
+
+_BUDGET = 2_000_000  # bytes of plot data, so that the page stays well under 3 MB
+_LEAST = 600  # samples that a figure carries in any case: two per pixel of its width
+
+
+def render(report: ReportInput) -> str:
+    """The page as HTML. It asks for nothing from anywhere and runs no script but its own.
+
+    The same input gives the same text.
+    """
+    figures = FigureStore(most_samples(report))
+    sections = _sections(report, figures)
+    style = _text("page.css") + _running_head(report)
+    scripts = [_text("alula_plot.js"), _text("report.js")]
+    policy = (
+        f"default-src 'none'; style-src {_hash(style)}; "
+        f"script-src {' '.join(map(_hash, scripts))}; "
+        "img-src data:; base-uri 'none'; form-action 'none'"
+    )
+    head = tag(
+        "head",
+        tag("meta", charset="utf-8"),
+        tag("meta", http_equiv="Content-Security-Policy", content=policy),
+        tag("meta", name="viewport", content="width=device-width, initial-scale=1"),
+        tag("meta", name="color-scheme", content="light dark"),
+        tag("meta", name="generator", content="Alula"),
+        tag("title", f"{report.name} · Alula report"),
+        Html(f"<style>{style}</style>"),
+    )
+    nav = tag(
+        "nav",
+        tag("p", "Contents", class_="kicker"),
+        tag("ol", *(tag("li", tag("a", title, href=f"#{key}")) for key, title, _ in sections)),
+        tag("button", "Dark page", id="theme", type="button", hidden=True),
+        aria_label="Contents",
+    )
+    body = tag(
+        "body",
+        tag("a", "Skip to the report", href="#report", class_="skip"),
+        nav,
+        tag(
+            "main",
+            header(report),
+            tag(
+                "noscript",
+                tag("p", "The plots need this page's own script; every table reads without it."),
+            ),
+            *(tag("section", tag("h2", t), c, id=k, class_="chapter") for k, t, c in sections),
+            tag("footer", tag("p", "End of report. Made by Alula; opens offline.")),
+            id="report",
+        ),
+        figures.block(),
+        *(Html(f"<script>{script}</script>") for script in scripts),
+    )
+    return "<!DOCTYPE html>\n" + tag("html", head, body, lang="en") + "\n"
+
+
+def _sections(report: ReportInput, figures: FigureStore) -> list[tuple[str, str, Html]]:
+    """(anchor, title, content) of each section that has something to show."""
+    found: list[tuple[str, str, Html]] = []
+    if report.cards or report.files:
+        found.append(("log", "Log card", log_cards(report)))
+    if report.maneuvers:
+        found.append(("maneuvers", "Maneuvers", maneuvers(report)))
+    if report.reconstruction is not None:
+        content = reconstruction(report.reconstruction, figures)
+        found.append(("reconstruction", "Flight path reconstruction", content))
+    if report.identification is not None:
+        fits = coefficients(report.identification, figures)
+        found.append(("coefficients", "Coefficients: measured and model", fits))
+        found.append(("parameters", "Parameters", parameters(report.identification)))
+        found.append(("correlation", "Correlation", correlation(report.identification)))
+    found.append(("messages", "Messages", messages(report)))
+    found.append(("provenance", "Provenance", provenance(report)))
+    for k, (key, title, content) in enumerate(found):
+        if key in ("reconstruction", "coefficients"):
+            found[k] = (key, title, join([_HOW_TO, content]))
+    return found
+
+
+_HOW_TO = tag(
+    "p",
+    "The plots of one maneuver share their time axis. Drag to zoom, Shift-drag to pan, double-click "
+    "to reset; the wheel zooms in a plot that was clicked. Keys in a focused plot: arrows pan, "
+    "+ and − zoom, 0 resets, [ and ] move the cursor from sample to sample.",
+    class_="note screen",
+)
+
+
+def most_samples(report: ReportInput) -> int:
+    """Samples that each figure may carry so that all of them fit the budget."""
+    columns = 0
+    if report.reconstruction is not None:
+        for segment in report.reconstruction.segments:
+            columns += 2 * len(segment.state_names) + 16 + len(segment.motion.controls)
+            columns += 4 * len(segment.sensors)
+    if report.identification is not None:
+        columns += 3 * len(report.identification.series)
+    per_value = 4 * 4 / 3  # float32 in base64
+    return max(_LEAST, int(_BUDGET / (per_value * max(columns, 1))))
+
+
+def _running_head(report: ReportInput) -> str:
+    left, right = css_string(f"Alula report: {report.name}"[:90]), css_string(report.date[:40])
+    return f"\n@page{{@top-left{{content:{left}}}@top-right{{content:{right}}}}}\n"
+
+
+def _text(name: str) -> str:
+    return files("alula.report").joinpath(name).read_text(encoding="utf-8")
+
+
+def _hash(content: str) -> str:
+    digest = hashlib.sha256(content.encode()).digest()
+    return f"'sha256-{base64.b64encode(digest).decode()}'"

@@ -1,0 +1,58 @@
+"use strict";
+/* Brings the report's page to life: plots, light and dark, paper. */
+(() => {
+  const root = document.documentElement;
+  const data = JSON.parse(document.getElementById("alula-plots").textContent);
+  const bytes = (id) => Uint8Array.from(atob(data.arrays[id]), (c) => c.charCodeAt(0)).buffer;
+  const decoded = new Map();
+  const values = (id) => {
+    if (id === null) return null;
+    if (!decoded.has(id)) decoded.set(id, new Float32Array(bytes(id)));
+    return decoded.get(id);
+  };
+  const times = (t) => "y" in t ? AlulaPlot.Times.of(new Float64Array(bytes(t.y)))
+    : AlulaPlot.Times.uniform(t.start, t.step, t.n);
+  const links = new Map();
+  const link = (group) => {
+    if (!links.has(group)) links.set(group, new AlulaPlot.Link());
+    return links.get(group);
+  };
+
+  const plots = [...document.querySelectorAll("[data-plot]")].map((host) => {
+    const figure = data.figures[Number(host.dataset.plot)];
+    const panels = figure.panels.map((p) => ({
+      ...p,
+      lines: p.lines.map((l) => ({ ...l, y: values(l.y) })),
+      bands: p.bands.map((b) => ({ ...b, half: values(b.half), center: values(b.center) })),
+    }));
+    return new AlulaPlot.Plot(host, { panels }, times(figure.t), link(figure.group));
+  });
+  for (const l of links.values()) l.changed();
+
+  const dark = matchMedia("(prefers-color-scheme: dark)");
+  const button = document.getElementById("theme");
+  const isDark = () => root.dataset.theme ? root.dataset.theme === "dark" : dark.matches;
+  const show = () => {
+    button.textContent = isDark() ? "Light page" : "Dark page";
+    AlulaPlot.redraw(plots);
+  };
+  button.hidden = false;
+  button.addEventListener("click", () => {
+    root.dataset.theme = isDark() ? "light" : "dark";
+    show();
+  });
+  dark.addEventListener("change", show);
+  show();
+
+  // On paper: light, sharp, and as zoomed as they are now.
+  let before = null;
+  addEventListener("beforeprint", () => {
+    before = root.dataset.theme || "";
+    root.dataset.theme = "light";
+    for (const plot of plots) plot.fix({ width: 350, scale: 3 });
+  });
+  addEventListener("afterprint", () => {
+    if (before) root.dataset.theme = before; else delete root.dataset.theme;
+    for (const plot of plots) plot.fix(null);
+  });
+})();

@@ -1,0 +1,68 @@
+"""Each coefficient: measured against model, with residual, per maneuver."""
+
+from __future__ import annotations
+
+from alula.identify.result import Identification, Series
+from alula.report.figures import Figure, FigureStore, Line, Panel
+from alula.report.html import Html, join, table, tag
+from alula.report.names import WORDS
+from alula.report.numbers import MISSING, number, percent, rms
+
+
+def coefficients(result: Identification, figures: FigureStore) -> Html:
+    """The table of fits, then for each coefficient one plot per maneuver."""
+    return join([_fits(result), *(_coefficient(result, name, figures) for name in result.fits)])
+
+
+def _fits(result: Identification) -> Html:
+    rows = [
+        [
+            tag("code", f.coefficient),
+            tag("code", f.formula),
+            f.n,
+            number(f.r2, 4),
+            percent(f.rrmse),
+            number(f.durbin_watson, 3),
+            f.n_held_out or MISSING,
+            number(f.r2_held_out, 4) if f.n_held_out else "not validated",
+        ]
+        for f in result.fits.values()
+    ]
+    return table(
+        "Fits. R² and relative rms error (RRMSE) are of the maneuvers of the fit; R² held out is of "
+        "maneuvers the fit never saw. Durbin-Watson far below 2 means colored residuals.",
+        ["Coefficient", "Model", "Samples", "R²", "RRMSE", "Durbin-Watson", "Samples held out",
+         "R² held out"],
+        rows,
+        numeric=(2, 3, 4, 5, 6, 7),
+    )
+
+
+def _coefficient(result: Identification, name: str, figures: FigureStore) -> Html:
+    series = [s for s in result.series if s.coefficient == name]
+    words = f", {WORDS[name]}" if name in WORDS else ""
+    return tag(
+        "section",
+        tag("h3", tag("code", name), words),
+        tag("p", "Model: ", tag("code", f"{name} = {result.fits[name].formula}"), class_="note"),
+        tag("div", *(figures.add(_figure(s)) for s in series), class_="grid"),
+    )
+
+
+def _figure(s: Series) -> Figure:
+    residual = s.measured - s.model
+    size = rms(residual)
+    return Figure(
+        f"{s.coefficient} · {s.maneuver}",
+        s.maneuver,
+        s.t,
+        (
+            Panel(
+                f"{s.coefficient} (–)",
+                (Line("measured", s.measured, "measured"), Line("model", s.model, "model")),
+            ),
+            Panel("residual (–)", (Line("measured − model", residual, "residual"),), small=True),
+        ),
+        note=f"Residual rms {number(size, 3)}.",
+        held_out=s.held_out,
+    )

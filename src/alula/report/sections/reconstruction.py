@@ -1,0 +1,157 @@
+"""Flight path reconstruction: constants, consistency tests, states and innovations."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from alula.reconstruct.result import Reconstruction, Segment, SensorFit
+from alula.report.figures import FigureStore
+from alula.report.html import Html, join, table, tag
+from alula.report.names import titled
+from alula.report.numbers import number, plus_minus, rms, shown
+from alula.report.pictures import mark, within_picture
+from alula.report.sections.motion import motion_figures, state_figures, sensor_figure
+
+
+def reconstruction(result: Reconstruction, figures: FigureStore) -> Html:
+    """Tables of the whole reconstruction, then the plots of each maneuver."""
+    level = "good" if result.converged else "bad"
+    return join(
+        [
+            tag("p", mark(level, f"Method {result.method}. {result.status}")),
+            _constants(result),
+            _nis(result),
+            _mismatch(result),
+            _whiteness(result),
+            *(_segment(s, figures) for s in result.segments),
+        ]
+    )
+
+
+def _constants(result: Reconstruction) -> Html:
+    if not result.constants:
+        return tag("p", "No constants were estimated.")
+    rows = []
+    for c in result.constants:
+        factor, unit = shown(c.unit)
+        rows.append(
+            [
+                tag("code", c.name),
+                plus_minus(factor * c.value, factor * c.se),
+                unit,
+                mark("good", "observable")
+                if c.observable
+                else mark("caution", "not observable: reported, not used"),
+            ]
+        )
+    return table(
+        "Biases, scale factors and other constants, with one standard error. Those of a walking "
+        "unknown are of its mean.",
+        ["Constant", "Value ± se", "Unit", "Do the data determine it?"],
+        rows,
+        numeric=(1,),
+    )
+
+
+def _nis(result: Reconstruction) -> Html:
+    low, high = result.nis_interval
+    if not math.isfinite(result.nis_mean):
+        return tag("p", "This method has no innovations; the residuals are shown instead.")
+    inside = low <= result.nis_mean <= high
+    words = (
+        f"Mean normalized innovation squared (NIS) {number(result.nis_mean, 3)} per measurement, "
+        f"expected {number(low, 3)} to {number(high, 3)} if the stated noise is right"
+    )
+    meaning = (
+        "the filter's uncertainty agrees with its errors"
+        if inside
+        else "the errors are larger than the filter believes"
+        if result.nis_mean > high
+        else "the errors are smaller than the filter believes"
+    )
+    return tag(
+        "div",
+        tag("p", mark("good" if inside else "caution", f"{words}: {meaning}.")),
+        within_picture(result.nis_mean, low, high, words),
+        class_="keep",
+    )
+
+
+def _mismatch(result: Reconstruction) -> Html:
+    """Rms of measurement minus open-loop kinematics: a row per maneuver, a column per sensor."""
+    units = {s.name: s.unit for g in result.segments for s in g.sensors}
+    names = list(dict.fromkeys(n for g in result.segments for n in g.mismatch))
+    if not names:
+        return Html("")
+
+    def cell(segment: Segment, name: str) -> str:
+        return number(shown(units.get(name, "")).factor * segment.mismatch.get(name, math.nan), 3)
+
+    return table(
+        "Mismatch: rms of measurement minus the kinematics integrated open loop with the estimated "
+        "constants and initial state. No filter smooths it.",
+        ["Maneuver", *(f"{n}, {shown(units.get(n, '')).text}" for n in names)],
+        ([tag("code", g.maneuver.id), *(cell(g, n) for n in names)] for g in result.segments),
+        numeric=range(1, len(names) + 1),
+    )
+
+
+def _whiteness(result: Reconstruction) -> Html:
+    """Residual size and lag-1 autocorrelation of each sensor, against the bound of white noise."""
+    rows = []
+    for segment in result.segments:
+        for s in segment.sensors:
+            factor, unit = shown(s.unit)
+            bound = 2.0 / math.sqrt(max(len(s.t), 1))
+            white = abs(s.whiteness) <= bound
+            rows.append(
+                [
+                    tag("code", s.name),
+                    segment.maneuver.id,
+                    len(s.t),
+                    unit,
+                    number(factor * s.sigma, 3),
+                    number(factor * rms(s.measured - s.fitted), 3),
+                    _inside(s),
+                    number(s.whiteness, 2),
+                    mark("good", "white") if white else mark("caution", "colored"),
+                ]
+            )
+    return table(
+        "Sensors: stated noise, residual (measured minus fitted), share of innovations inside their "
+        "2 σ band (95 % expected) and lag-1 autocorrelation, called white within ±2/√n.",
+        ["Sensor", "Maneuver", "Samples", "Unit", "Stated σ", "Residual rms", "In 2 σ", "Lag 1",
+         "Innovations"],
+        rows,
+        numeric=(2, 4, 5, 6, 7),
+        class_="dense",
+    )
+
+
+def _inside(s: SensorFit) -> str:
+    known = np.isfinite(s.innovation) & np.isfinite(s.innovation_se)
+    if not known.any():
+        return "–"
+    share = np.mean(np.abs(s.innovation[known]) <= 2.0 * s.innovation_se[known])
+    return f"{100.0 * share:.0f} %"
+
+
+def _segment(segment: Segment, figures: FigureStore) -> Html:
+    maneuver = segment.maneuver
+    grid = [
+        tag("h4", "States with their ±2 standard error bands, at the inertial sensor"),
+        tag("div", *(figures.add(f) for f in state_figures(segment)), class_="grid"),
+        tag("h4", "Motion at the center of gravity, as identification takes it"),
+        tag("div", *(figures.add(f) for f in motion_figures(segment.motion)), class_="grid"),
+        tag("h4", "Sensors: measured and fitted, innovations with their 2 σ bands"),
+        tag(
+            "div",
+            *(figures.add(sensor_figure(s, maneuver, titled(s.name))) for s in segment.sensors),
+            class_="grid",
+        ),
+    ]
+    held = tag("span", "held out", class_="tag") if maneuver.held_out else ""
+    heading = tag("h3", "Maneuver ", tag("code", maneuver.id), f" ({maneuver.kind}) ", held)
+    return tag("section", heading, *grid, class_="maneuver")
