@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import tomllib
 from pathlib import Path
 from typing import Any, Literal
 
@@ -12,13 +11,16 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from alula.base.arrays import frozen
 from alula.base.files import write_whole
-from alula.base.messages import BadInput, Message, refuse
+from alula.base.messages import BadInput, refuse
+from alula.base.project_messages import explain, read_toml
 from alula.model.aero_model import AeroModel, Reference, aero_model
 
 SCHEMA = "alula.model/1"
 
 
-class _Reference(BaseModel):
+class ReferenceTable(BaseModel):
+    """Reference geometry of the coefficients."""
+
     model_config = ConfigDict(extra="forbid")
     S: float = Field(gt=0.0, description="Reference area, m2")
     b: float = Field(gt=0.0, description="Full span, m")
@@ -32,7 +34,7 @@ class ModelFile(BaseModel):
     schema_: Literal["alula.model/1"] = Field(alias="schema")
     name: str
     axes: Literal["body", "stability"] = "body"
-    reference: _Reference
+    reference: ReferenceTable
     reference_point: tuple[float, float, float] = (0.0, 0.0, 0.0)
     assumed: list[str] = Field(default_factory=list, description="Names of assumed parameters")
     models: dict[str, str] = Field(description="One formula per coefficient")
@@ -47,20 +49,11 @@ class ModelFile(BaseModel):
 def load_model(path: Path | str) -> AeroModel:
     """The model in a file; raises BadInput naming file, key, expected and found."""
     path = Path(path)
+    text, tree, _ = read_toml(path)
     try:
-        raw = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise refuse(
-            "unreadable_file",
-            where=str(path),
-            expected=f"a TOML file with schema = '{SCHEMA}'",
-            found=str(error),
-            do="Check the path and the syntax at the place named.",
-        ) from error
-    try:
-        file = ModelFile.model_validate(raw)
+        file = ModelFile.model_validate(tree)
     except ValidationError as error:
-        raise BadInput(*(_message(path, e) for e in error.errors())) from error
+        raise BadInput(*explain(error, path, text)) from None
     return aero_model(
         file.name,
         file.models,
@@ -126,15 +119,3 @@ def _matrix(path: Path, rows: list[list[float]] | None) -> Any:
             do="Give a square matrix in the order of [values], or leave it out.",
         )
     return np.array(rows)
-
-
-def _message(path: Path, error: Any) -> Message:
-    key = ".".join(str(part) for part in error["loc"]) or "the file"
-    return Message(
-        code="model_file",
-        level="error",
-        where=f"{path}, {key}",
-        expected=error["msg"],
-        found="nothing" if error["type"] == "missing" else repr(error["input"])[:80],
-        do="Correct this key; docs/notation.md names the variables and coefficients.",
-    )

@@ -1,6 +1,6 @@
 """Virtual flights: the equations of motion, trim, control inputs, sensors."""
 
-from alula.simulate.airframe import Airframe
+from alula.simulate.airframe import Airframe, airframe_of
 from alula.simulate.fly import SimulatedFlight, fly, initial_state
 from alula.simulate.inputs import Pulse, Signal, Steps, Sum, bank_to_bank, doublet, input_3211
 from alula.simulate.sensors import (
@@ -22,6 +22,7 @@ __all__ = [
     "Steps",
     "Sum",
     "Trim",
+    "airframe_of",
     "bank_to_bank",
     "doublet",
     "every",

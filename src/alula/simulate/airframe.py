@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from alula.aircraft import Aircraft
 from alula.base.arrays import Array, frozen
 from alula.base.messages import refuse
 from alula.core import core
@@ -65,4 +66,25 @@ def core_model(
         model.axes == "stability",
         to_table(model),
         model.values,
+    )
+
+
+def airframe_of(aircraft: Aircraft, fuel_used: float = 0.0) -> Airframe:
+    """The airframe of an aircraft file after burning `fuel_used` kg.
+
+    All engines act as one: at the mean of their positions, along their mean direction. Raises
+    BadInput where the file states no mass.
+    """
+    properties = aircraft.mass_properties(np.array([fuel_used]))
+    point, direction = None, np.array([1.0, 0.0, 0.0])
+    if aircraft.engines:
+        point = np.mean([engine.position for engine in aircraft.engines], axis=0)
+        direction = np.mean([engine.direction for engine in aircraft.engines], axis=0)
+        direction = direction / np.linalg.norm(direction)
+    return Airframe(
+        mass=float(properties.mass[0]),
+        inertia=frozen(properties.inertia[0]),
+        cg=frozen(properties.cg[0]),
+        thrust_point=None if point is None else frozen(point),
+        thrust_direction=frozen(direction),
     )
