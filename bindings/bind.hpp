@@ -14,3 +14,6 @@ using CubeOut = nb::ndarray<double, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
 
 void bind_path(nb::module_& m);
 void bind_processor(nb::module_& m);
+void bind_aero(nb::module_& m);
+void bind_atmosphere(nb::module_& m);
+void bind_simulate(nb::module_& m);

@@ -1,1 +1,26 @@
+"""Aerodynamic models: formulas as text, terms and their names, AeroModel and its file."""
 
+from alula.model.aero_model import AXES, AeroModel, Reference, aero_model
+from alula.model.file import load_model, model_text, save_model
+from alula.model.grammar import parse, reference_scales, regressors
+from alula.model.table import evaluate_in_core, to_table
+from alula.model.terms import COEFFICIENTS, VARIABLES, Factor, Term
+
+__all__ = [
+    "AXES",
+    "COEFFICIENTS",
+    "VARIABLES",
+    "AeroModel",
+    "Factor",
+    "Reference",
+    "Term",
+    "aero_model",
+    "evaluate_in_core",
+    "load_model",
+    "model_text",
+    "parse",
+    "reference_scales",
+    "regressors",
+    "save_model",
+    "to_table",
+]

@@ -1,0 +1,96 @@
+#pragma once
+// An aerodynamic model as a table: steps make products, absolute values and ramps out of the base
+// variables; terms add a value times one of these slots to a coefficient. Text is parsed to it
+// outside the core; the same bytes serve host and target, and exporters walk them.
+#include <array>
+#include <cstdint>
+#include <type_traits>
+
+#include "alula/math/capacity.hpp"
+
+namespace alula {
+
+// Base variables, the first slots. Rates are pb/2V, qc/2V, rb/2V; angles rad; V m/s.
+enum Variable : int { kOne, kV, kAlpha, kBeta, kPhat, kQhat, kRhat, kDe, kDa, kDr, kDf, kDt, kMach };
+inline constexpr int kVariables = 13;
+
+// Body axes: CX CY CZ Cl Cm Cn. Stability axes: CD in the place of CX, CL in the place of CZ.
+inline constexpr int kCoefficients = 6;
+inline constexpr int kMaxSteps = 64;
+inline constexpr int kMaxSlots = kVariables + kMaxSteps;
+
+enum class Operation : std::uint8_t {
+  multiply,  // slot a times slot b
+  absolute,  // |slot a|
+  ramp,      // slot a less the knot, where that is positive; else zero
+};
+
+struct Step {
+  double knot;
+  Operation operation;
+  std::uint8_t a, b;
+};
+
+struct Term {
+  std::uint8_t coefficient, slot;
+};
+
+struct TermTable {
+  std::array<Step, kMaxSteps> steps;
+  std::array<Term, kMaxTerms> terms;
+  std::uint8_t step_count;
+  std::uint8_t term_count;
+};
+static_assert(std::is_trivially_copyable_v<TermTable> && sizeof(TermTable) < 2048);
+
+// Whether every step looks back only, and every index is inside its array.
+constexpr bool well_formed(const TermTable& table) {
+  if (table.step_count > kMaxSteps || table.term_count > kMaxTerms) return false;
+  for (int i = 0; i < table.step_count; ++i) {
+    const Step& step = table.steps[static_cast<unsigned>(i)];
+    if (step.a >= kVariables + i || step.b >= kVariables + i) return false;
+    if (step.operation > Operation::ramp) return false;
+  }
+  for (int k = 0; k < table.term_count; ++k) {
+    const Term& term = table.terms[static_cast<unsigned>(k)];
+    if (term.coefficient >= kCoefficients || term.slot >= kVariables + table.step_count)
+      return false;
+  }
+  return true;
+}
+
+// Fills the slots behind the base variables, which the caller has put into the first places.
+template <class S>
+constexpr void fill_slots(const TermTable& table, S* slots) {
+  for (int i = 0; i < table.step_count; ++i) {
+    const Step& step = table.steps[static_cast<unsigned>(i)];
+    const S& a = slots[step.a];
+    S& out = slots[kVariables + i];
+    switch (step.operation) {
+      case Operation::multiply:
+        out = a * slots[step.b];
+        break;
+      case Operation::absolute:
+        out = a < S(0) ? -a : a;
+        break;
+      case Operation::ramp:
+        out = a > S(step.knot) ? a - S(step.knot) : S(0);
+        break;
+    }
+  }
+}
+
+// The coefficients for given slots; values: one per term. A slot is at the same time the
+// derivative of its coefficient with respect to the term's value.
+template <class S, class T>
+constexpr std::array<S, kCoefficients> coefficients(const TermTable& table, const T* values,
+                                                    const S* slots) {
+  std::array<S, kCoefficients> c{};
+  for (int k = 0; k < table.term_count; ++k) {
+    const Term& term = table.terms[static_cast<unsigned>(k)];
+    c[term.coefficient] += values[k] * slots[term.slot];
+  }
+  return c;
+}
+
+}  // namespace alula

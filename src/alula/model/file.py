@@ -1,0 +1,121 @@
+"""The file of an aerodynamic model, `alula.model/1`: TOML that a person can read and write."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from alula.base.arrays import frozen
+from alula.base.files import write_whole
+from alula.base.messages import BadInput, refuse
+from alula.base.project_messages import explain, read_toml
+from alula.model.aero_model import AeroModel, Reference, aero_model
+
+SCHEMA = "alula.model/1"
+
+
+class ReferenceTable(BaseModel):
+    """Reference geometry of the coefficients."""
+
+    model_config = ConfigDict(extra="forbid")
+    S: float = Field(gt=0.0, description="Reference area, m2")
+    b: float = Field(gt=0.0, description="Full span, m")
+    c: float = Field(gt=0.0, description="Reference chord, m")
+
+
+class ModelFile(BaseModel):
+    """The file as it is written; `load_model` makes an AeroModel of it."""
+
+    model_config = ConfigDict(extra="forbid", populate_by_name=True)
+    schema_: Literal["alula.model/1"] = Field(alias="schema")
+    name: str
+    axes: Literal["body", "stability"] = "body"
+    reference: ReferenceTable
+    reference_point: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    assumed: list[str] = Field(default_factory=list, description="Names of assumed parameters")
+    models: dict[str, str] = Field(description="One formula per coefficient")
+    values: dict[str, float] = Field(description="One value per term")
+    covariance: list[list[float]] | None = Field(
+        default=None, description="In the order of [values]"
+    )
+    validity: dict[str, tuple[float, float]] = Field(default_factory=dict)
+    provenance: dict[str, str] = Field(default_factory=dict)
+
+
+def load_model(path: Path | str) -> AeroModel:
+    """The model in a file; raises BadInput naming file, key, expected and found."""
+    path = Path(path)
+    text, tree, _ = read_toml(path)
+    try:
+        file = ModelFile.model_validate(tree)
+    except ValidationError as error:
+        raise BadInput(*explain(error, path, text)) from None
+    return aero_model(
+        file.name,
+        file.models,
+        file.values,
+        Reference(file.reference.S, file.reference.b, file.reference.c),
+        axes=file.axes,
+        covariance=_matrix(path, file.covariance),
+        reference_point=frozen(file.reference_point),
+        validity=file.validity,
+        assumed=tuple(file.assumed),
+        provenance=file.provenance,
+    )
+
+
+def save_model(model: AeroModel, path: Path | str) -> None:
+    """Write the model, whole or not at all; `load_model` gives back equal values to the bit."""
+    write_whole(Path(path), model_text(model))
+
+
+def model_text(model: AeroModel) -> str:
+    """The model as the text of its file."""
+    r = model.reference
+    lines = [
+        f"schema = {_text(SCHEMA)}",
+        f"name = {_text(model.name)}",
+        f"axes = {_text(model.axes)}",
+        f"reference = {{ S = {r.S!r}, b = {r.b!r}, c = {r.c!r} }}  # m2, m, m",
+        f"reference_point = {_row(model.reference_point)}  # m, datum frame",
+    ]
+    if model.assumed:
+        lines.append(f"assumed = [{', '.join(_text(n) for n in model.assumed)}]")
+    if model.covariance is not None:
+        rows = "".join(f"  {_row(row)},\n" for row in model.covariance)
+        lines.append(f"covariance = [  # in the order of [values]\n{rows}]")
+    lines += ["", "[models]", *(f"{c} = {_text(f)}" for c, f in model.formulas.items())]
+    lines += ["", "[values]", *(f"{_text(n)} = {v!r}" for n, v in model.params.items())]
+    if model.validity:
+        lines += ["", "[validity]", *(f"{_text(n)} = {_row(v)}" for n, v in model.validity.items())]
+    if model.provenance:
+        lines += ["", "[provenance]"]
+        lines += [f"{_text(k)} = {_text(v)}" for k, v in model.provenance.items()]
+    return "\n".join(lines) + "\n"
+
+
+def _text(text: str) -> str:
+    # A JSON string is a TOML basic string, but for DEL, which TOML wants escaped.
+    return json.dumps(text).replace("\x7f", "\\u007f")
+
+
+def _row(values: Any) -> str:
+    return f"[{', '.join(repr(float(v)) for v in values)}]"
+
+
+def _matrix(path: Path, rows: list[list[float]] | None) -> Any:
+    if rows is None:
+        return None
+    if any(len(row) != len(rows) for row in rows):
+        raise refuse(
+            "model_covariance",
+            where=f"{path}, covariance",
+            expected=f"{len(rows)} rows of {len(rows)} numbers",
+            found=f"rows of {', '.join(str(len(row)) for row in rows)}",
+            do="Give a square matrix in the order of [values], or leave it out.",
+        )
+    return np.array(rows)

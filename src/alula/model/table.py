@@ -1,0 +1,92 @@
+"""An AeroModel as the table that the core evaluates, and its variables as the core's columns."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from alula.base.arrays import Array
+from alula.base.messages import refuse
+from alula.core import core
+from alula.model.aero_model import AXES, AeroModel
+from alula.model.terms import VARIABLES, Factor
+
+MAX_STEPS = 64  # core/include/alula/aero/term_table.hpp
+MAX_TERMS = 64  # core/include/alula/math/capacity.hpp
+_MULTIPLY, _ABSOLUTE, _RAMP = 0, 1, 2
+
+
+class _Slots:
+    """Hands out slots, one for each distinct product, so that nothing is computed twice."""
+
+    def __init__(self) -> None:
+        self.steps: list[tuple[float, float, float, float]] = []
+        self.slot_of: dict[tuple[float, float, float, float], int] = {}
+
+    def step(self, operation: int, a: int, b: int = 0, knot: float = 0.0) -> int:
+        key = (float(operation), float(a), float(b), knot)
+        if key not in self.slot_of:
+            self.slot_of[key] = 1 + len(VARIABLES) + len(self.steps)
+            self.steps.append(key)
+        return self.slot_of[key]
+
+    def factor(self, factor: Factor) -> int:
+        slot = 1 + VARIABLES.index(factor.variable)
+        if factor.kind == "abs":
+            slot = self.step(_ABSOLUTE, slot)
+        elif factor.kind == "ramp":
+            slot = self.step(_RAMP, slot, knot=factor.knot)
+        base = slot
+        for _ in range(factor.power - 1):
+            slot = self.step(_MULTIPLY, slot, base)
+        return slot
+
+    def product(self, factors: tuple[Factor, ...]) -> int:
+        slot = 0  # the constant 1
+        for i, factor in enumerate(factors):
+            other = self.factor(factor)
+            slot = other if i == 0 else self.step(_MULTIPLY, slot, other)
+        return slot
+
+
+def to_table(model: AeroModel) -> Any:
+    """The core's TermTable of a model; its values are `model.values`.
+
+    Raises BadInput where the model has more terms or products than the table holds.
+    """
+    slots = _Slots()
+    places = AXES[model.axes]
+    terms = [(places.index(c), slots.product(term.factors)) for c, term in model.terms]
+    if len(terms) > MAX_TERMS or len(slots.steps) > MAX_STEPS:
+        raise refuse(
+            "model_too_large",
+            where=f"aerodynamic model '{model.name}'",
+            expected=f"at most {MAX_TERMS} terms and {MAX_STEPS} distinct products",
+            found=f"{len(terms)} terms and {len(slots.steps)} products",
+            do="Remove terms that do not matter.",
+        )
+    return core.TermTable(
+        np.array(slots.steps, dtype=np.float64).reshape(-1, 4),
+        np.array(terms, dtype=np.float64).reshape(-1, 2),
+    )
+
+
+def columns(variables: Mapping[str, Array]) -> Array:
+    """Variables (n,) by name as the core's matrix (n, 13); those not given are zero."""
+    n = len(next(iter(variables.values())))
+    out = np.zeros((n, 1 + len(VARIABLES)))
+    out[:, 0] = 1.0
+    for j, name in enumerate(VARIABLES, start=1):
+        if name in variables:
+            out[:, j] = variables[name]
+    return out
+
+
+def evaluate_in_core(model: AeroModel, variables: Mapping[str, Array]) -> dict[str, Array]:
+    """The coefficients (n,) as the core computes them, by name; see `AeroModel.evaluate`."""
+    rows = columns(variables)
+    out = np.empty((len(rows), 6))
+    to_table(model).evaluate(model.values, rows, out)
+    return dict(zip(AXES[model.axes], out.T, strict=True))
