@@ -106,7 +106,8 @@ def test_all_that_is_wrong_is_said_at_once(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "content", [b"", b"\xff\xfe\x00", b"[reference", b"S = 1\nS = 2\n", b"\x00"]
+    "content",
+    [b"", b"\xff\xfe\x00", b"[reference", b"S = 1\nS = 2\n", b"\x00", b"S = " + b"9" * 5000],
 )
 def test_files_that_are_not_aircraft(tmp_path: Path, content: bytes) -> None:
     refusal(tmp_path, content)
