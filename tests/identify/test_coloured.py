@@ -1,26 +1,14 @@
 """Covariance with coloured residuals: against its definition, and by how often intervals cover."""
 
-from itertools import pairwise
-
 import numpy as np
 import pytest
+from identify_flights import short_period
 from scipy import signal
 
 from alula.identify.coloured import coloured_covariance
 from alula.identify.least_squares import least_squares
 from alula.identify.regression import Block, regress
 from alula.identify.verdict import assess
-
-
-def short_period(n: int, dt: float) -> np.ndarray:
-    """Constant, angle of attack, pitch rate and elevator of a 3-2-1-1 (a lightly damped mode)."""
-    t = np.arange(n) * dt
-    edges = [1.0, 2.5, 3.5, 4.0, 4.5]
-    de = sum((-1) ** k * ((t >= a) & (t < b)) for k, (a, b) in enumerate(pairwise(edges)))
-    a = np.array([[-1.2, 1.0], [-6.25, -1.8]])
-    system = signal.StateSpace(a, [[0.0], [-5.0]], np.eye(2), np.zeros((2, 1)))
-    x = signal.lsim(system, de.astype(float), t)[1]
-    return np.column_stack([np.ones(n), x, de])
 
 
 def autoregressive(rng: np.random.Generator, n: int, dt: float, tau: float) -> np.ndarray:

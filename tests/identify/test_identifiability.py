@@ -1,27 +1,13 @@
 """Parameters that the data cannot tell are not given a value, and what is known is named."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from test_coloured import short_period
+from identify_flights import DT, N, maneuver
 
-from alula.flight import Maneuver
-from alula.identify import CoefficientData, identify_equation_error
+from alula.identify import identify_equation_error
 from alula.identify.verdict import verdict
-
-N, DT = 600, 0.02
-
-
-def maneuver(name="m1", seed=0, **replaced) -> CoefficientData:
-    """Cm = -1.2 alpha - 20 qhat - 1.5 de with white noise; `replaced` overrides variables."""
-    rng = np.random.default_rng(seed)
-    _, alpha, q, de = short_period(N, DT).T * 0.05
-    variables = {"alpha": alpha + 0.05, "qhat": 0.02 * q, "de": de - 0.02}
-    variables |= {"da": np.zeros(N), "beta": np.zeros(N), "df": np.zeros(N)} | replaced
-    cm = -1.2 * variables["alpha"] - 20.0 * variables["qhat"] - 1.5 * variables["de"]
-    cm = cm + 1e-3 * rng.standard_normal(N)
-    return CoefficientData(
-        Maneuver(name, "log", "3211", 0.0, 12.0), np.arange(N) * DT, {"Cm": cm}, variables
-    )
 
 
 def identify(formula, *data, **options):
@@ -157,3 +143,14 @@ def test_variance_inflation_is_one_over_one_minus_r2():
 )
 def test_verdict_rule(value, se, ci, scale, expected):
     assert verdict(value, se, ci, scale) == expected
+
+
+def test_noisy_regressor_is_said():
+    """Half a degree of noise on alpha, used unsmoothed."""
+    v = maneuver().variables
+    item = maneuver()
+    rough = v["alpha"] + 0.01 * np.random.default_rng(3).standard_normal(N)
+    item = replace(item, variables={**v, "alpha": rough})
+    result = identify("1 + alpha + qhat + de", item)
+    assert "noisy_regressor" in [m.code for m in result.messages]
+    assert "noisy_regressor" not in [m.code for m in identify("1+alpha+qhat+de").messages]

@@ -1,10 +1,12 @@
-"""Flights for the tests of identification: the Twin Otter's and ATTAS's recordings as Motion."""
+"""Flights for the tests of identification: recordings of Twin Otter and ATTAS, and made ones."""
 
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
+from scipy import signal
 from scipy.io import loadmat
 
 from alula.base.arrays import Array
@@ -13,6 +15,7 @@ from alula.identify import CoefficientData, Reference, Thrust, coefficients_from
 from data import data
 
 DEG = np.pi / 180.0
+N, DT = 600, 0.02  # samples and interval (s) of the made maneuvers
 ATTAS = Reference(S=64.0, b=21.5, c=3.159, point=np.zeros(3))
 
 
@@ -91,4 +94,28 @@ def window(
         t=item.t[keep],
         coefficients={k: v[keep] for k, v in item.coefficients.items()},
         variables={k: v[keep] for k, v in item.variables.items()},
+    )
+
+
+def short_period(n: int, dt: float) -> Array:
+    """Constant, angle of attack, pitch rate and elevator of a 3-2-1-1 (a lightly damped mode)."""
+    t = np.arange(n) * dt
+    edges = [1.0, 2.5, 3.5, 4.0, 4.5]
+    de = sum((-1) ** k * ((t >= a) & (t < b)) for k, (a, b) in enumerate(pairwise(edges)))
+    a = np.array([[-1.2, 1.0], [-6.25, -1.8]])
+    system = signal.StateSpace(a, [[0.0], [-5.0]], np.eye(2), np.zeros((2, 1)))
+    x = signal.lsim(system, de.astype(float), t)[1]
+    return np.column_stack([np.ones(n), x, de])
+
+
+def maneuver(name: str = "m1", seed: int = 0, **replaced: Array) -> CoefficientData:
+    """Cm = -1.2 alpha - 20 qhat - 1.5 de with white noise; `replaced` overrides variables."""
+    rng = np.random.default_rng(seed)
+    _, alpha, q, de = short_period(N, DT).T * 0.05
+    variables = {"alpha": alpha + 0.05, "qhat": 0.02 * q, "de": de - 0.02}
+    variables |= {"da": np.zeros(N), "beta": np.zeros(N), "df": np.zeros(N)} | replaced
+    cm = -1.2 * variables["alpha"] - 20.0 * variables["qhat"] - 1.5 * variables["de"]
+    cm = cm + 1e-3 * rng.standard_normal(N)
+    return CoefficientData(
+        Maneuver(name, "log", "3211", 0.0, 12.0), np.arange(N) * DT, {"Cm": cm}, variables
     )

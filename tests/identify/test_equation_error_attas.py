@@ -1,7 +1,7 @@
 """ATTAS: three maneuvers against an independent least-squares fit of the same recordings."""
 
 import pytest
-from flights import attas, attas_motion, window
+from identify_flights import attas, attas_motion, window
 
 from alula.identify import identify_equation_error
 from alula.identify.state_space import identify_state_space

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from flights import twin_otter
+from identify_flights import twin_otter
 
 from alula.identify import identify_equation_error
 

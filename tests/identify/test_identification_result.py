@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from test_identifiability import maneuver
+from identify_flights import maneuver
 
 from alula.base.messages import BadInput
 from alula.identify import identify_equation_error
