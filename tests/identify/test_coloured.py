@@ -5,7 +5,7 @@ import pytest
 from identify_flights import short_period
 from scipy import signal
 
-from alula.identify.coloured import coloured_covariance
+from alula.base.coloured import coloured_covariance
 from alula.identify.least_squares import least_squares
 from alula.identify.regression import Block, regress
 from alula.identify.verdict import assess
