@@ -201,3 +201,32 @@ def test_tables_have_captions_and_headings_do_not_jump(text: str) -> None:
     levels = [int(n) for n in re.findall(r"<h([1-6])", text)]
     assert levels[0] == 1
     assert all(b <= a + 1 for a, b in pairwise(levels))
+
+
+def _luminance(color: str) -> float:
+    """Relative luminance by WCAG 2.1."""
+    code = color.lstrip("#")
+    code = code if len(code) == 6 else "".join(2 * c for c in code)
+    parts = [int(code[k : k + 2], 16) / 255 for k in (0, 2, 4)]
+    linear = [c / 12.92 if c <= 0.03928 else ((c + 0.055) / 1.055) ** 2.4 for c in parts]
+    return float(np.dot(linear, [0.2126, 0.7152, 0.0722]))
+
+
+def _contrast(a: str, b: str) -> float:
+    high, low = sorted((_luminance(a), _luminance(b)), reverse=True)
+    return (high + 0.05) / (low + 0.05)
+
+
+@pytest.mark.parametrize("start", [":root{", ":root[data-theme=dark]{"])
+def test_contrast_of_words_and_curves(text: str, start: str) -> None:
+    block = text.partition(start)[2].partition("}")[0]
+    colors = dict(re.findall(r"--([\w-]+):(#[0-9a-f]{3,6});", block))
+    for name in ("ink", "muted", "link", "good", "caution", "bad", "plot-ink", "plot-muted"):
+        for ground in ("paper", "soft"):  # 4.5 and 3: WCAG 2.1, 1.4.3 and 1.4.11, level AA
+            assert _contrast(colors[name], colors[ground]) >= 4.5, (name, ground)
+    for name in ("measured", "model", "residual"):
+        assert _contrast(colors[f"plot-{name}"], colors["plot-paper"]) >= 3, name
+    for step in range(11):
+        for sign in "pm":
+            word = colors["over"] if step >= 7 else colors["ink"]
+            assert _contrast(word, colors[f"{sign}{step}"]) >= 4.5, (sign, step)

@@ -151,7 +151,8 @@ const AlulaPlot = (() => {
         c.strokeStyle = Math.abs(v) < t.step * 1e-6 ? this.color.axis : this.color.grid;
         line(c, LEFT, crisp(y(v)), right, crisp(y(v)));
         c.fillStyle = this.color.muted;
-        c.fillText(format(v / 10 ** e, t.step / 10 ** e), LEFT - 6, y(v));
+        // a number at the upper edge would run into the label
+        if (y(v) > p.top + 4) c.fillText(format(v / 10 ** e, t.step / 10 ** e), LEFT - 6, y(v));
       }
       c.strokeStyle = this.color.grid;
       for (const v of this.timeTicks().values) line(c, crisp(this.x(v)), p.top, crisp(this.x(v)), p.bottom);

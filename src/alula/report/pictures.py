@@ -55,10 +55,10 @@ def mark(level: str, words: object, *, long: bool = False) -> Html:
 
 
 def interval_picture(value: float, low: float, high: float, truth: float | None = None) -> Html:
-    """A 95 % interval, its value and zero on one axis; a diamond marks the truth where known."""
+    """A 95 % interval and its value on one axis with zero; with the truth instead where known."""
     if not (math.isfinite(low) and math.isfinite(high) and math.isfinite(value)):
         return Html("")
-    points = [low, high, 0.0] + ([truth] if truth is not None else [])
+    points = [low, high, 0.0 if truth is None else truth]
     left, right = min(points), max(points)
     span = (right - left) or 1.0
     width, height, pad = 150.0, 18.0, 6.0
@@ -79,7 +79,7 @@ def interval_picture(value: float, low: float, high: float, truth: float | None 
         height,
         label,
         tag("line", x1=f"{pad:g}", x2=f"{width - pad:g}", y1="9", y2="9", class_="rail"),
-        upright(0.0, 1, 17, "zero"),
+        upright(0.0, 1, 17, "zero") if left <= 0.0 <= right else "",
         diamond,
         tag("line", x1=x(low), x2=x(high), y1="9", y2="9", class_="bar"),
         upright(low, 5, 13, "bar"),

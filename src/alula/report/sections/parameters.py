@@ -24,10 +24,10 @@ def parameters(result: Identification) -> Html:
         [
             tag(
                 "p",
-                f"Method {result.method}. ‘se’ includes colored residuals and the uncertainty of "
+                f"Method: {result.method}. ‘se’ includes colored residuals and the uncertainty of "
                 "the reconstruction; ‘plain se’ would hold if the residuals were white. The "
-                "picture shows the 95 % interval and the value beside zero (upright line). "
-                "Verdicts: ",
+                "picture shows the 95 % interval and the value beside zero (upright line), or "
+                "beside the truth (diamond) where that is known. Verdicts: ",
                 mark("good", "ok"),
                 " resolved; ",
                 mark("caution", "weak"),
@@ -64,7 +64,8 @@ def _table(coefficient: str, members: list[Parameter]) -> Html:
             row.insert(4, number(p.truth) if p.truth is not None else MISSING)
         rows.append(row)
     if truth:
-        head.insert(4, "Truth ◇")
+        head.insert(4, "Truth")
+        head[head.index("Zero and interval")] = "Truth ◇ and interval"
     right = (1, 3, 4, 6, 7, 8) if truth else (1, 3, 5, 6, 7)
     return table(join([tag("code", coefficient), words]), head, rows, numeric=right, class_="dense")
 

@@ -9,7 +9,7 @@ import numpy as np
 from alula.reconstruct.result import Reconstruction, Segment, SensorFit
 from alula.report.figures import FigureStore
 from alula.report.html import Html, join, table, tag
-from alula.report.names import titled
+from alula.report.names import meaning, titled
 from alula.report.numbers import number, plus_minus, rms, shown
 from alula.report.pictures import mark, within_picture
 from alula.report.sections.motion import motion_figures, sensor_figure, state_figures
@@ -20,7 +20,7 @@ def reconstruction(result: Reconstruction, figures: FigureStore) -> Html:
     level = "good" if result.converged else "bad"
     return join(
         [
-            tag("p", mark(level, f"Method {result.method}. {result.status}", long=True)),
+            tag("p", mark(level, f"Method: {result.method}. {result.status}", long=True)),
             _constants(result),
             _nis(result),
             _mismatch(result),
@@ -39,6 +39,7 @@ def _constants(result: Reconstruction) -> Html:
         rows.append(
             [
                 tag("code", c.name),
+                meaning(c.name),
                 plus_minus(factor * c.value, factor * c.se),
                 unit,
                 mark("good", "observable")
@@ -49,9 +50,9 @@ def _constants(result: Reconstruction) -> Html:
     return table(
         "Biases, scale factors and other constants, with one standard error. Those of a walking "
         "unknown are of its mean.",
-        ["Constant", "Value ± se", "Unit", "Do the data determine it?"],
+        ["Constant", "Meaning", "Value ± se", "Unit", "Do the data determine it?"],
         rows,
-        numeric=(1,),
+        numeric=(2,),
     )
 
 
