@@ -10,7 +10,7 @@ from alula.reconstruct.result import Reconstruction, Segment, SensorFit
 from alula.report.figures import FigureStore
 from alula.report.html import Html, join, table, tag
 from alula.report.names import meaning, titled
-from alula.report.numbers import number, plus_minus, rms, shown
+from alula.report.numbers import MISSING, number, plus_minus, rms, shown
 from alula.report.pictures import mark, within_picture
 from alula.report.sections.motion import motion_figures, sensor_figure, state_figures
 
@@ -107,7 +107,10 @@ def _whiteness(result: Reconstruction) -> Html:
             factor, unit = shown(s.unit)
             samples = int(np.isfinite(s.measured).sum())
             bound = 2.0 / math.sqrt(max(samples, 1))
-            white = abs(s.whiteness) <= bound
+            judged: Html | str = MISSING
+            if math.isfinite(s.whiteness):
+                white = abs(s.whiteness) <= bound
+                judged = mark("good", "white") if white else mark("caution", "colored")
             rows.append(
                 [
                     tag("code", s.name),
@@ -118,7 +121,7 @@ def _whiteness(result: Reconstruction) -> Html:
                     number(factor * rms(s.measured - s.fitted), 3),
                     _inside(s),
                     number(s.whiteness, 2),
-                    mark("good", "white") if white else mark("caution", "colored"),
+                    judged,
                 ]
             )
     return table(
@@ -144,7 +147,7 @@ def _whiteness(result: Reconstruction) -> Html:
 def _inside(s: SensorFit) -> str:
     known = np.isfinite(s.innovation) & np.isfinite(s.innovation_se)
     if not known.any():
-        return "–"
+        return MISSING
     share = np.mean(np.abs(s.innovation[known]) <= 2.0 * s.innovation_se[known])
     return f"{100.0 * share:.0f} %"
 
