@@ -78,8 +78,16 @@ def load(log: LogSpec) -> Text:
             found=str(error),
             do="Set 'encoding' of this log, such as 'utf-8', 'utf-16' or 'latin-1'.",
         ) from None
-    if b"\0" in data[:4096] or b"\0" in data:
+    if b"\0" in data:
         raise wrong_type(log.path, log.format, "binary data (there are NUL bytes in it)")
+    if not data.strip():
+        raise refuse(
+            "empty_file",
+            where=str(log.path),
+            expected="a log with samples",
+            found=f"{len(raw)} bytes without a line of text",
+            do="Copy the log again from where it was recorded.",
+        )
     if encoding != "utf-8" and not log.encoding:
         messages.append(
             note(
