@@ -36,7 +36,7 @@ class Transfer:
     ) -> None:
         self.problem, self.record, self.window_s = problem, record, window_s
         t = record.t[record.base]
-        fuel = _fuel(flight, t)
+        fuel = fuel_on(flight, t)
         position = (
             aircraft.reference_point[None, :]
             if aircraft.mass is None
@@ -46,9 +46,9 @@ class Transfer:
         self.still = not np.any(self.arm)
         nothing = np.zeros(len(t))
         self.template = Motion(
-            record.maneuver, t, *([nothing] * 18),
+            record.maneuver, t, *([nothing] * 17),
             controls=controls_on(flight, aircraft, t),
-            thrust=_thrust(flight, aircraft, t),
+            thrust=thrust_on(flight, aircraft, t),
             fuel_used=fuel,
             recorded=recorded_on(flight, t),
         )  # fmt: skip
@@ -100,7 +100,9 @@ class Transfer:
 
 def standard_density(h: Array) -> Array:
     """Density of the 1976 standard atmosphere, kg/m3, at heights h (n,) m."""
-    return np.asarray(core.standard_atmosphere(np.ascontiguousarray(h, dtype=np.float64))["rho"])
+    out = np.empty((len(h), 4))
+    core.standard_atmosphere(np.ascontiguousarray(h, dtype=np.float64), out)
+    return out[:, 2].copy()
 
 
 def rotate(phi: Array, theta: Array, psi: Array, v_E: Array) -> Array:
@@ -134,7 +136,7 @@ def recorded_on(flight: Flight, t: Array) -> dict[str, Array]:
     return {name: channel_on(flight, name, t) for name in names if name in flight}
 
 
-def _thrust(flight: Flight, aircraft: Aircraft, t: Array) -> Array | None:
+def thrust_on(flight: Flight, aircraft: Aircraft, t: Array) -> Array | None:
     """All engines' thrust, N; None where one of them is not known."""
     total = np.zeros(len(t))
     for engine in aircraft.engines:
@@ -158,7 +160,7 @@ def engines_on(flight: Flight, aircraft: Aircraft, t: Array) -> dict[str, Array]
     return out
 
 
-def _fuel(flight: Flight, t: Array) -> Array | None:
+def fuel_on(flight: Flight, t: Array) -> Array | None:
     """Fuel burned since the start of the flight, kg: the channel, or the sum of the tanks'."""
     names = [n for n in flight.channels if n.startswith("fuel_used")]
     if not names:
@@ -166,5 +168,3 @@ def _fuel(flight: Flight, t: Array) -> Array | None:
     if "fuel_used" in names:
         names = ["fuel_used"]
     return np.asarray(sum((channel_on(flight, n, t) for n in names), np.zeros(len(t))))
-
-

@@ -95,7 +95,7 @@ def _walk(name: str, spec: UnknownSpec) -> float:
             "missing_walk",
             where=f"reconstruct.unknowns.{name}",
             expected="'walk', the standard deviation gained in one second",
-            found="state = \"walk\" without it",
-            do="Add for example walk = 1e-4, or take state = \"constant\".",
+            found='state = "walk" without it',
+            do='Add for example walk = 1e-4, or take state = "constant".',
         )
     return spec.in_si(spec.walk)
