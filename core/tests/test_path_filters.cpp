@@ -1,0 +1,181 @@
+// The two filters: equal to each other where the problem is linear, free of heap, the same in
+// float within what float can hold.
+#include <gtest/gtest.h>
+
+#include <alula/filters/extended.hpp>
+#include <alula/filters/unscented.hpp>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "allocations.hpp"
+#include "path_case.hpp"
+
+namespace {
+
+using namespace alula;
+using alula_test::fourteen_states;
+using alula_test::set_prior;
+
+template <class Filter>
+class PathFilters : public testing::Test {};
+using Filters = testing::Types<Unscented<double, kShortRow>, Unscented<double, kLongRow>,
+                               Extended<double, kShortRow>, Extended<double, kLongRow>>;
+TYPED_TEST_SUITE(PathFilters, Filters);
+
+template <class Filter, class T>
+int run(Filter& filter, const PathModel<T>& model, const alula_test::Flight<T>& f) {
+  return run_filter(filter, model, f.record(), PathHistory<T>{});
+}
+
+TYPED_TEST(PathFilters, FindTheBiasesWithinTheirOwnErrors) {
+  const auto model = fourteen_states<double>();
+  const auto f = alula_test::flight(model, 6000, 1);
+  auto filter = std::make_unique<TypeParam>();
+  set_prior(*filter);
+  ASSERT_EQ(run(*filter, model, f), 6000);
+  const double truth[7] = {0.05, -0.03, 0.04, 1e-3, -8e-4, 6e-4, 0};
+  for (int i = 0; i < 7; ++i)  // seven normal numbers stay within 4 but once in 2000 seeds
+    EXPECT_NEAR(filter->x[7 + i], truth[i], 4 * std::sqrt(filter->P[7 + i][7 + i])) << i;
+  EXPECT_LT(std::sqrt(filter->P[7][7]), 0.02);  // from 0.1: the data have told something
+  EXPECT_EQ(filter->repairs, 0);
+}
+
+TYPED_TEST(PathFilters, AllocateNothingPerStepAndPerRun) {
+  const auto model = fourteen_states<double>();
+  const auto f = alula_test::flight(model, 600, 2);
+  const int n = model.states, ny = model.sensors.size();
+  std::vector<double> x(600 * n), covariance(600 * n * (n + 1) / 2), e(600 * ny), d(600 * ny),
+      nis(600);
+  const PathHistory<double> history{x.data(), covariance.data(), e.data(), d.data(), nis.data()};
+  auto filter = std::make_unique<TypeParam>();
+  set_prior(*filter);
+
+  long before = alula_test::allocations();
+  { std::vector<double> control(3); }
+  ASSERT_GE(alula_test::allocations() - before, 1) << "the counter does not count";
+
+  before = alula_test::allocations();
+  const int done = run_filter(*filter, model, f.record(), history);
+  const int reached = run_smoother(*filter, model, f.record(), history);
+  EXPECT_EQ(alula_test::allocations() - before, 0);
+  EXPECT_EQ(done, 600);
+  EXPECT_EQ(reached, 0);
+
+  before = alula_test::allocations();
+  filter->predict(model, &f.inputs[0], &f.inputs[6], 0.01);
+  filter->update(model, &f.inputs[6], &f.readings[7], e.data(), d.data());
+  EXPECT_EQ(alula_test::allocations() - before, 0);
+}
+
+TEST(PathOpenLoop, AllocatesNothing) {
+  const auto model = fourteen_states<double>();
+  const auto f = alula_test::flight(model, 200, 2);
+  std::vector<double> motion(200 * 7), z(200 * 7), jm(200 * 7 * 14), jz(200 * 7 * 14), x0(14);
+  std::copy(f.initial.begin(), f.initial.begin() + 7, x0.begin());
+  const long before = alula_test::allocations();
+  run_open_loop<double>(model, f.t.data(), f.inputs.data(), 200, x0.data(), nullptr, motion.data(),
+                        z.data(), jm.data(), jz.data());
+  EXPECT_EQ(alula_test::allocations() - before, 0);
+}
+
+// With attitude and rates known, velocity, height and accelerometer biases obey linear equations:
+// there the extended and the unscented filter are the Kalman filter, both.
+TEST(PathFiltersAgree, OnALinearProblem) {
+  PathModel<double> model;
+  model.states = 10;
+  model.dynamic = 10;
+  for (int i = 0; i < 3; ++i) {
+    model.slot[kBiasAx + i] = 7 + i;
+    model.input_sigma[i] = 0.05;
+    model.walk[7 + i] = 1e-3;
+  }
+  for (const Quantity q : {Quantity::height, Quantity::velocity_north, Quantity::velocity_east,
+                           Quantity::velocity_down}) {
+    PathSensor<double> sensor;
+    sensor.quantity = q;
+    sensor.variance = q == Quantity::height ? 4 : 0.04;
+    sensor.position[0] = 2;
+    model.sensors.push(sensor);
+  }
+  auto f = alula_test::flight(model, 2000, 3);
+  for (int i = 11; i < 14; ++i) f.initial[i] = 1e-9;  // attitude is known
+  Unscented<double, kShortRow> u;
+  Extended<double, kShortRow> e;
+  for (int i = 7; i < 10; ++i) u.P[i][i] = e.P[i][i] = 0.01;
+  ASSERT_EQ(run(u, model, f), 2000);
+  ASSERT_EQ(run(e, model, f), 2000);
+  const auto attitude = [](int i) { return i >= kPhi && i <= kPsi; };
+  for (int i = 0; i < 10; ++i) {
+    // What is not linear is the attitude's 1e-9 rad; rounding over 2000 steps is below that.
+    EXPECT_NEAR(u.x[i], e.x[i], 1e-8 * (1 + std::abs(e.x[i]))) << i;
+    for (int j = i; j < 10 && !attitude(i); ++j)
+      if (!attitude(j)) EXPECT_NEAR(u.P[i][j], e.P[i][j], 1e-7 * std::sqrt(e.P[i][i] * e.P[j][j])) << i << ' ' << j;
+  }
+}
+
+TEST(PathFiltersAgree, WithShortAndLongRows) {
+  const auto model = fourteen_states<double>();
+  const auto f = alula_test::flight(model, 1000, 4);
+  Unscented<double, kShortRow> a;
+  Unscented<double, kLongRow> b;
+  set_prior(a);
+  set_prior(b);
+  ASSERT_EQ(run(a, model, f), 1000);
+  ASSERT_EQ(run(b, model, f), 1000);
+  // The sums differ in their order only.
+  for (int i = 0; i < 14; ++i) EXPECT_NEAR(a.x[i], b.x[i], 1e-9 * (1 + std::abs(a.x[i])));
+}
+
+template <template <class, int> class Filter>
+void compare_float() {
+  const auto model = fourteen_states<double>();
+  const auto single_model = fourteen_states<float>();
+  const auto f = alula_test::flight(model, 1000, 5);
+  alula_test::Flight<float> g;
+  g.start = f.start;
+  for (int k = 0; k < 1000; ++k) g.t.push_back(float(f.t[k]));
+  g.inputs.assign(f.inputs.begin(), f.inputs.end());
+  g.readings.assign(f.readings.begin(), f.readings.end());
+  g.initial.assign(f.initial.begin(), f.initial.end());
+  auto d = std::make_unique<Filter<double, kShortRow>>();
+  auto s = std::make_unique<Filter<float, kShortRow>>();
+  set_prior(*d);
+  set_prior(*s);
+  ASSERT_EQ(run(*d, model, f), 1000);
+  ASSERT_EQ(run(*s, single_model, g), 1000);
+  // 1e-3 of the value, or 0.05 of a standard deviation, which no user can see.
+  for (int i = 0; i < 14; ++i)
+    EXPECT_NEAR(s->x[i], d->x[i], 1e-3 * std::abs(d->x[i]) + 0.05 * std::sqrt(d->P[i][i])) << i;
+}
+
+TEST(PathFiltersInFloat, UnscentedFollowsDouble) { compare_float<Unscented>(); }
+TEST(PathFiltersInFloat, ExtendedFollowsDouble) { compare_float<Extended>(); }
+
+TEST(PathFiltersHoles, NoReadingLeavesThePrediction) {
+  const auto model = fourteen_states<double>();
+  const double nan = std::nan("");
+  const double z[7] = {nan, nan, nan, nan, nan, nan, nan};
+  double e[kMaxOutputs], d[kMaxOutputs];
+  Unscented<double, kShortRow> filter;
+  for (int i = 0; i < 14; ++i) filter.P[i][i] = 1;
+  const auto at = alula_test::motion_at(0);
+  std::copy(at.y, at.y + 7, filter.x);
+  EXPECT_EQ(filter.update(model, at.m, z, e, d), 0);
+  EXPECT_EQ(filter.x[1], at.y[1]);
+  EXPECT_EQ(filter.P[3][3], 1);
+}
+
+TEST(PathFiltersFailure, AStateThatIsNoNumberStopsTheRun) {
+  const auto model = fourteen_states<double>();
+  auto f = alula_test::flight(model, 100, 6);
+  f.inputs[50 * 6 + 1] = std::nan("");
+  Unscented<double, kShortRow> u;
+  Extended<double, kShortRow> e;
+  set_prior(u);
+  set_prior(e);
+  EXPECT_LE(run(u, model, f), 51);
+  EXPECT_LE(run(e, model, f), 51);
+}
+
+}  // namespace
