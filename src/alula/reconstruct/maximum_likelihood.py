@@ -164,9 +164,10 @@ def _evaluate(problem: Problem, model: core.PathModel, k: int, state: Array) -> 
 
 def _noise(fits: list[_Fit], stated: Array) -> Array:
     """Each sensor's standard deviation by its residuals. Dittrich 2016, Eq. (3.51)."""
-    squares = sum(np.sum(f.residual**2, axis=0) for f in fits)
-    counts = np.maximum(sum(f.valid.sum(axis=0) for f in fits), 1)
-    return np.asarray(np.maximum(np.sqrt(squares / counts), _LEAST_SIGMA * stated))
+    squares = np.sum([np.sum(f.residual**2, axis=0) for f in fits], axis=0)
+    counts = np.maximum(np.sum([f.valid.sum(axis=0) for f in fits], axis=0), 1)
+    out: Array = np.maximum(np.sqrt(squares / counts), _LEAST_SIGMA * stated)
+    return out
 
 
 def _normal(layout: _Layout, fits: list[_Fit], sigma: Array) -> tuple[Array, Array]:
