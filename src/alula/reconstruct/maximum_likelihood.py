@@ -141,7 +141,8 @@ def _state(problem: Problem, layout: _Layout, p: Array, k: int) -> Array:
     """Initial motion and unknowns of maneuver k."""
     if not layout.maneuvers:
         return np.concatenate([problem.initial[k, : problem.motion], p[: layout.unknowns]])
-    return p[layout.columns(k)]
+    state: Array = p[layout.columns(k)]
+    return state
 
 
 def _evaluate(problem: Problem, model: core.PathModel, k: int, state: Array) -> _Fit:
