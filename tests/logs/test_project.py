@@ -151,3 +151,10 @@ def test_no_such_file(folder: Path) -> None:
     with pytest.raises(BadInput) as caught:
         load_project(folder / "none.toml")
     assert caught.value.messages[0].code == "file_not_readable"
+
+
+def test_the_documented_example_is_a_project(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("LOGS", "/logs")
+    text = (Path(__file__).parents[2] / "docs" / "project_file.md").read_text(encoding="utf-8")
+    project = load(folder, text.split("```toml\n")[1].split("```")[0])
+    assert project.maneuvers[0].id == "elevator"

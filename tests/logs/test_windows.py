@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 import rich.console
 
-from alula.base.messages import BadInput
 from alula.base.project import load_project
 from alula.flight import Channel, Flight, Maneuver, gaps, gaps_within, split_at_gaps
-from alula.logs import log_card, maneuvers, read_all
+from alula.logs import log_card, read_all
 from alula.logs.card import quantization
 from alula.logs.card_view import card_view
-from logs.made import csv_text, flight_table
+from logs.made import flight_table
+from logs.windows import windows
 
 T = np.arange(0.0, 10.0, 0.1)
 
@@ -65,83 +65,10 @@ def test_split_leaves_no_gap_inside() -> None:
     assert len(split_at_gaps(flight, maneuver, ["q"])) == 2
 
 
-PROJECT = """
-schema = "alula.project/1"
-name = "windows"
-[[logs]]
-id = "log"
-path = "log.csv"
-[channels]
-t = {from = "t", unit = "s"}
-V = {from = "V", unit = "m/s"}
-q = {from = "q", unit = "deg/s"}
-"""
-
-
-def windows(folder: Path, *entries: str, hole: tuple[int, int] | None = None):
-    table = flight_table()
-    if hole:
-        table = np.delete(table, slice(*hole), axis=0)
-    (folder / "log.csv").write_text(csv_text(table))
-    text = PROJECT
-    for k, entry in enumerate(entries):
-        text += f'[[maneuvers]]\nid = "m{k}"\nlog = "log"\n' + entry.replace("; ", "\n") + "\n"
-    (folder / "project.toml").write_text(text)
-    project = load_project(folder / "project.toml")
-    return maneuvers(project, read_all(project))
-
-
-def refusal(folder: Path, *entries: str, hole: tuple[int, int] | None = None) -> list[str]:
-    with pytest.raises(BadInput) as caught:
-        windows(folder, *entries, hole=hole)
-    assert all(m.where and m.expected and m.found and m.do for m in caught.value.messages)
-    return [m.code for m in caught.value.messages]
-
-
 def test_windows(tmp_path: Path) -> None:
     found, messages = windows(tmp_path, "start = 0.0; end = 3.0", "start = 3.0; end = 7.98")
     assert [(m.id, m.start, m.end) for m in found] == [("m0", 0.0, 3.0), ("m1", 3.0, 7.98)]
     assert messages == ()
-
-
-@pytest.mark.parametrize("window", ["start = 5.0; end = 9.0", "start = -1.0; end = 3.0"])
-def test_window_outside_the_log(tmp_path: Path, window: str) -> None:
-    assert refusal(tmp_path, window) == ["window_outside_log"]
-
-
-def test_window_of_a_few_samples(tmp_path: Path) -> None:
-    assert refusal(tmp_path, "start = 1.0; end = 1.1") == ["too_few_samples"]
-
-
-def test_gap_refused_or_split(tmp_path: Path) -> None:
-    window = "start = 0.5; end = 6.0"
-    assert refusal(tmp_path, window, hole=(100, 150)) == ["gap_in_maneuver"]
-    found, messages = windows(tmp_path, f'{window}; on_gap = "split"', hole=(100, 150))
-    assert [(m.id, m.start, m.end) for m in found] == [
-        ("m0.1", 0.5, pytest.approx(1.98)),
-        ("m0.2", pytest.approx(3.0), 6.0),
-    ]
-    assert [m.code for m in messages] == ["split_at_gaps"]
-
-
-@pytest.mark.parametrize(
-    ("first", "second", "level"),
-    [
-        ('aspect = "longitudinal"', 'aspect = "lateral"', "info"),
-        ('aspect = "longitudinal"', 'aspect = "longitudinal"', "warning"),
-        ('aspect = "both"', 'aspect = "lateral"', "warning"),
-    ],
-)
-def test_overlapping_windows(tmp_path: Path, first: str, second: str, level: str) -> None:
-    _, messages = windows(
-        tmp_path, f"start = 0.0; end = 4.0; {first}", f"start = 3.0; end = 7.0; {second}"
-    )
-    assert [(m.code, m.level) for m in messages] == [("overlapping_windows", level)]
-
-
-def test_held_out_samples_are_never_seen(tmp_path: Path) -> None:
-    entries = ("start = 0.0; end = 4.0", "start = 3.0; end = 7.0; held_out = true")
-    assert refusal(tmp_path, *entries) == ["overlapping_windows"]
 
 
 def test_log_card(tmp_path: Path) -> None:

@@ -7,7 +7,7 @@ Source: van den Hoek 2017, Sec. 3; Dittrich 2016, Sec. 3.1.4; Rauch, Tung, Strie
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 

@@ -141,7 +141,8 @@ def _state(problem: Problem, layout: _Layout, p: Array, k: int) -> Array:
     """Initial motion and unknowns of maneuver k."""
     if not layout.maneuvers:
         return np.concatenate([problem.initial[k, : problem.motion], p[: layout.unknowns]])
-    return p[layout.columns(k)]
+    state: Array = p[layout.columns(k)]
+    return state
 
 
 def _evaluate(problem: Problem, model: core.PathModel, k: int, state: Array) -> _Fit:
@@ -164,9 +165,10 @@ def _evaluate(problem: Problem, model: core.PathModel, k: int, state: Array) -> 
 
 def _noise(fits: list[_Fit], stated: Array) -> Array:
     """Each sensor's standard deviation by its residuals. Dittrich 2016, Eq. (3.51)."""
-    squares = sum(np.sum(f.residual**2, axis=0) for f in fits)
-    counts = np.maximum(sum(f.valid.sum(axis=0) for f in fits), 1)
-    return np.asarray(np.maximum(np.sqrt(squares / counts), _LEAST_SIGMA * stated))
+    squares = np.sum([np.sum(f.residual**2, axis=0) for f in fits], axis=0)
+    counts = np.maximum(np.sum([f.valid.sum(axis=0) for f in fits], axis=0), 1)
+    out: Array = np.maximum(np.sqrt(squares / counts), _LEAST_SIGMA * stated)
+    return out
 
 
 def _normal(layout: _Layout, fits: list[_Fit], sigma: Array) -> tuple[Array, Array]:

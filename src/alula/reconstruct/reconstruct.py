@@ -76,14 +76,15 @@ def reconstruct(
             )
             messages += compare_duplicates(flights[maneuver.log], maneuver)
     order = {m.id: i for i, m in enumerate(maneuvers)}
-    low, high = chi2.ppf([0.025, 0.975], max(readings, 1)) / max(readings, 1)
+    count = max(readings, 1)
+    low, high = (float(chi2.ppf(x, count)) / count for x in (0.025, 0.975))
     return Reconstruction(
         method=spec.filter,
         segments=tuple(sorted(segments, key=lambda s: order[s.maneuver.id])),
         constants=tuple(constants),
         constants_cov=_block_diagonal(covariances),
-        nis_mean=nis / max(readings, 1),
-        nis_interval=(float(low), float(high)),
+        nis_mean=nis / count,
+        nis_interval=(low, high),
         status=status,
         converged=converged,
         messages=tuple(dict.fromkeys(messages)),

@@ -7,8 +7,6 @@ velocity at the center of gravity.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from alula.aircraft import Aircraft
@@ -44,14 +42,11 @@ class Transfer:
         )
         self.arm = position - problem.position
         self.still = not np.any(self.arm)
-        nothing = np.zeros(len(t))
-        self.template = Motion(
-            record.maneuver, t, *([nothing] * 17),
-            controls=controls_on(flight, aircraft, t),
-            thrust=thrust_on(flight, aircraft, t),
-            fuel_used=fuel,
-            recorded=recorded_on(flight, t),
-        )  # fmt: skip
+        self.t, self.maneuver = t, record.maneuver
+        self.controls = controls_on(flight, aircraft, t)
+        self.thrust = thrust_on(flight, aircraft, t)
+        self.fuel_used = fuel
+        self.recorded = recorded_on(flight, t)
         self.rho = channel_on(flight, "rho", t) if "rho" in flight else None
 
     def motion(self, states: Array) -> Motion:
@@ -71,7 +66,7 @@ class Transfer:
             ]
         )
         f, rates = true[:, :3], true[:, 3:]
-        t = self.template.t
+        t = self.t
         accelerations = np.column_stack(
             [differentiate(t, rates[:, i], self.window_s).rates for i in range(3)]
         )
@@ -85,8 +80,9 @@ class Transfer:
             h = h - _down(phi, theta, self.arm)
         u, side, w = v.T
         V = np.sqrt(np.sum(v**2, axis=1))
-        return replace(
-            self.template,
+        return Motion(
+            maneuver=self.maneuver,
+            t=t,
             V=V,
             alpha=np.arctan2(w, u),
             beta=np.arcsin(np.clip(side / V, -1.0, 1.0)),
@@ -95,6 +91,8 @@ class Transfer:
             ax=f[:, 0], ay=f[:, 1], az=f[:, 2],
             phi=phi, theta=theta, psi=psi, h=h,
             rho=standard_density(h) if self.rho is None else self.rho,
+            controls=self.controls, thrust=self.thrust, fuel_used=self.fuel_used,
+            recorded=self.recorded,
         )  # fmt: skip
 
 

@@ -69,7 +69,7 @@ def choose_unknowns(
     out = []
     for name, unit in units.items():
         spec = specs.get(name)
-        default = name.startswith("b_") and name in COMMON or (name in WIND and windy)
+        default = (name.startswith("b_") and name in COMMON) or (name in WIND and windy)
         free = default if spec is None else spec.state != "off"
         spec = spec or UnknownSpec()
         prior = _PRIOR_WIND if name in WIND else _PRIOR_SCALE if unit == "1" else _PRIOR[unit]

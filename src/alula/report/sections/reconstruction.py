@@ -9,7 +9,7 @@ import numpy as np
 from alula.reconstruct.result import Reconstruction, Segment, SensorFit
 from alula.report.figures import FigureStore
 from alula.report.html import Html, join, table, tag
-from alula.report.names import meaning, titled
+from alula.report.names import meaning, titled, unit_of
 from alula.report.numbers import MISSING, number, plus_minus, rms, shown
 from alula.report.pictures import mark, within_picture
 from alula.report.sections.motion import motion_figures, sensor_figure, state_figures
@@ -82,18 +82,19 @@ def _nis(result: Reconstruction) -> Html:
 
 def _mismatch(result: Reconstruction) -> Html:
     """Rms of measurement minus open-loop kinematics: a row per maneuver, a column per sensor."""
-    units = {s.name: s.unit for g in result.segments for s in g.sensors}
     names = list(dict.fromkeys(n for g in result.segments for n in g.mismatch))
+    units = {n: unit_of(n) for n in names}
+    units |= {s.name: s.unit for g in result.segments for s in g.sensors}
     if not names:
         return Html("")
 
     def cell(segment: Segment, name: str) -> str:
-        return number(shown(units.get(name, "")).factor * segment.mismatch.get(name, math.nan), 3)
+        return number(shown(units[name]).factor * segment.mismatch.get(name, math.nan), 3)
 
     return table(
         "Mismatch: rms of measurement minus the kinematics integrated open loop with the estimated "
         "constants and initial state. No filter smooths it.",
-        ["Maneuver", *(f"{n}, {shown(units.get(n, '')).text}" for n in names)],
+        ["Maneuver", *(f"{n}, {shown(units[n]).text}" for n in names)],
         ([tag("code", g.maneuver.id), *(cell(g, n) for n in names)] for g in result.segments),
         numeric=range(1, len(names) + 1),
     )
@@ -124,6 +125,8 @@ def _whiteness(result: Reconstruction) -> Html:
                     judged,
                 ]
             )
+    if not rows:
+        return tag("p", "No sensor was compared with the motion.")
     return table(
         "Sensors: stated noise, residual (measured minus fitted), share of innovations inside "
         "their 2 σ band (95 % expected) and lag-1 autocorrelation, called white within ±2/√n.",
@@ -167,5 +170,6 @@ def _segment(segment: Segment, figures: FigureStore) -> Html:
         ),
     ]
     held = tag("span", "held out", class_="tag") if maneuver.held_out else ""
-    heading = tag("h3", "Maneuver ", tag("code", maneuver.id), f" ({maneuver.kind}) ", held)
+    kind = f" ({maneuver.kind}) " if maneuver.kind else " "
+    heading = tag("h3", "Maneuver ", tag("code", maneuver.id), kind, held)
     return tag("section", heading, *grid, class_="maneuver")
