@@ -3,9 +3,10 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.alula
+CPP := $(shell find core bindings -name '*.hpp' -o -name '*.cpp')
 CORE := $(shell find core/include bindings -name '*.hpp' -o -name '*.cpp') CMakeLists.txt pyproject.toml
 
-.PHONY: build demo test bench verify lint core-test clean
+.PHONY: build demo test bench verify lint core-test stubs format clean
 build: $(STAMP)
 
 $(BIN)/python:
@@ -24,19 +25,37 @@ demo: $(STAMP)
 test: $(STAMP)
 	$(BIN)/python -m pytest -m "not slow"
 
+# The peer that the filters are measured against; the other peers are optional.
 bench: $(STAMP)
-	$(BIN)/python -m pip install --quiet ".[bench]" --no-build-isolation --editable ".[bench]"
+	@$(BIN)/python -c "import numba" 2>/dev/null || $(BIN)/python -m pip install --quiet "numba>=0.60"
 	$(BIN)/python benchmarks/bench.py
 
 verify: $(STAMP)
+	@$(BIN)/python -c "import numba" 2>/dev/null || $(BIN)/python -m pip install --quiet "numba>=0.60"
 	$(BIN)/python benchmarks/verify.py
 
 lint: $(STAMP)
-	$(BIN)/python -m pip install --quiet "ruff>=0.6" "mypy>=1.11" "import-linter>=2.0" pandas-stubs scipy-stubs clang-format
+	@$(BIN)/python -m pip install --quiet "ruff>=0.6" "mypy>=1.11" "import-linter>=2.0" pandas-stubs scipy-stubs "clang-format>=18"
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+	$(BIN)/clang-format --dry-run -Werror $(CPP)
+
+# C++ tests of the core, GoogleTest from the system. Where it is missing they are skipped and say
+# so; with ALULA_REQUIRE_DATA set that is a failure.
+core-test: $(BIN)/python
+	@$(BIN)/cmake -S . -B build/core-tests -DALULA_PYTHON=OFF -DALULA_TESTS=ON -DCMAKE_BUILD_TYPE=Release
+	@$(BIN)/cmake --build build/core-tests --parallel
+	@$(BIN)/ctest --test-dir build/core-tests --output-on-failure $(if $(ALULA_REQUIRE_DATA),--no-tests=error)
+
+# The committed description of the compiled core, as its build gives it.
+stubs: $(STAMP)
+	$(BIN)/python -m nanobind.stubgen -q -m alula._core -o src/alula/_core.pyi
+
+format: $(STAMP)
+	$(BIN)/ruff format .
+	$(BIN)/clang-format -i $(CPP)
 
 clean:
 	rm -rf build $(VENV)

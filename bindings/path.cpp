@@ -18,6 +18,8 @@ using Model = PathModel<double>;
 
 namespace {
 
+using Result = nb::typed<nb::dict, nb::str, nb::any>;  // arrays and counts by name
+
 int row_of(const char* what, std::size_t found, int expected) {
   if (static_cast<int>(found) != expected)
     throw std::invalid_argument(std::string(what) + ": expected " + std::to_string(expected) +
@@ -41,7 +43,7 @@ void add_sensor(Model& model, int quantity, const std::vector<double>& position,
 }
 
 template <class Filter>
-nb::dict run_rows(const Model& model, Vector t, Matrix inputs, Matrix readings,
+Result run_rows(const Model& model, Vector t, Matrix inputs, Matrix readings,
              nb::ndarray<const int, nb::ndim<1>, nb::c_contig> start, Matrix initial, Vector x0,
              Vector sigma0, bool smooth, bool keep_covariance) {
   const int samples = static_cast<int>(t.shape(0)), n = model.states, ny = model.sensors.size();
@@ -74,7 +76,7 @@ nb::dict run_rows(const Model& model, Vector t, Matrix inputs, Matrix readings,
       for (int j = 0; j < n; ++j)
         final_covariance.data()[i * n + j] = filter->P[i < j ? i : j][i < j ? j : i];
   }
-  nb::dict out;
+  Result out;
   const int repairs = filter->repairs;
   if (smooth && done == samples) {
     Array<double> filtered({samples, n});
@@ -97,7 +99,7 @@ nb::dict run_rows(const Model& model, Vector t, Matrix inputs, Matrix readings,
 
 // The filter with the shorter of the two row lengths that hold the states.
 template <template <class, int> class Filter>
-nb::dict run(const Model& model, Vector t, Matrix inputs, Matrix readings,
+Result run(const Model& model, Vector t, Matrix inputs, Matrix readings,
              nb::ndarray<const int, nb::ndim<1>, nb::c_contig> start, Matrix initial, Vector x0,
              Vector sigma0, bool smooth, bool keep_covariance) {
   const auto chosen = model.states < kShortRow ? &run_rows<Filter<double, kShortRow>>
@@ -123,7 +125,7 @@ nb::ndarray<nb::numpy, double> readings_of(const Model& model, Matrix inputs, Ma
   return out.numpy();
 }
 
-nb::dict open_loop(const Model& model, Vector t, Matrix inputs, Vector x0,
+Result open_loop(const Model& model, Vector t, Matrix inputs, Vector x0,
                    std::optional<Matrix> held, bool jacobian) {
   const int samples = static_cast<int>(t.shape(0)), n = model.states, ny = model.sensors.size();
   row_of("inputs", inputs.shape(1), kInertialInputs);
@@ -141,7 +143,7 @@ nb::dict open_loop(const Model& model, Vector t, Matrix inputs, Vector x0,
                   held ? held->data() : nullptr, motion.data(), readings.data(), jacobian ? motion_jacobian.data() : nullptr,
                   jacobian ? readings_jacobian.data() : nullptr);
   }
-  nb::dict out;
+  Result out;
   out["motion"] = motion.numpy();
   out["readings"] = readings.numpy();
   out["motion_jacobian"] = motion_jacobian.numpy();

@@ -2,8 +2,10 @@
 // Extended Kalman filter for flight path reconstruction: exact Jacobian of the RK4 step and of the
 // outputs by dual numbers, readings taken up one after another with the Jacobian of the prediction
 // (which equals the batch update). Source: Dittrich 2016, Eq. (3.22) to (3.26).
+#include <alula/filters/careful_update.hpp>
 #include <alula/filters/path_model.hpp>
 #include <alula/math/cholesky.hpp>
+#include <cstring>
 #include <limits>
 
 namespace alula {
@@ -42,6 +44,13 @@ class Extended {
  private:
   T F_[kMotionStatesWithPosition][R];
   T H_[kMaxOutputs][R];
+  alignas(64) T before_[R][R];  // P before the update
+  // Some direction has become sharper than the rest by half of all digits: from here on rounding
+  // can make P indefinite, and every update looks.
+  bool delicate_ = false;
+
+  int update_carefully(const PathModel<T>& model, const T* z, const T* predicted, T* innovation,
+                       T* deviation);
 
   template <int N>
   bool predict(const PathModel<T>& model, const T* u0, const T* u1, T dt) {
@@ -83,12 +92,12 @@ class Extended {
 
 template <class T, int R>
 int Extended<T, R>::update(const PathModel<T>& model, const T* u, const T* z, T* innovation,
-                        T* deviation) {
+                           T* deviation) {
   const int n = model.states;
-  T predicted[kMaxOutputs], step[R] = {}, PH[R], M[R][R];
+  T predicted[kMaxOutputs], step[R] = {}, PH[R];
   int used = 0;
-  bool close = false;
   path_outputs_jacobian<R>(model, x, u, predicted, H_);
+  std::memcpy(before_, P, sizeof P);
   for (int s = 0; s < model.sensors.size(); ++s) {
     innovation[s] = deviation[s] = std::numeric_limits<T>::quiet_NaN();
     if (!std::isfinite(z[s])) continue;
@@ -103,37 +112,57 @@ int Extended<T, R>::update(const PathModel<T>& model, const T* u, const T* z, T*
     }
     T total = variance;
     for (int j = 0; j < n; ++j) total += h[j] * PH[j];
-    if (!(total > T(0)) || !(total < T(1e30))) return -1;
+    // Here the subtraction below would cancel more than six digits.
+    if (!(variance > T(1e-6) * total)) return update_carefully(model, z, predicted, innovation, deviation);
     const T inverse = T(1) / total;
-    if (variance > T(1e-6) * total) {
-      for (int i = 0; i < n; ++i) add_scaled<R>(P[i], -PH[i] * inverse, PH);
-      add_scaled<R>(step, e * inverse, PH);
-    } else {
-      // The plain form would cancel more than six digits: Joseph's form (I-KH) P (I-KH)' + K R K'.
-      close = true;
-      for (int i = 0; i < n; ++i) {
-        const T gain = PH[i] * inverse;
-        step[i] += gain * e;
-        for (int j = 0; j < n; ++j) M[i][j] = P[i][j] - gain * PH[j];
-      }
-      for (int i = 0; i < n; ++i) {
-        T mh = T(0);
-        for (int j = 0; j < n; ++j) mh += M[i][j] * h[j];
-        const T f = (variance * PH[i] * inverse - mh) * inverse;
-        for (int j = 0; j < n; ++j) P[i][j] = M[i][j] + f * PH[j];
-      }
-      for (int i = 0; i < n; ++i)
-        for (int j = 0; j < i; ++j) P[i][j] = P[j][i] = T(0.5) * (P[i][j] + P[j][i]);
-    }
+    for (int i = 0; i < n; ++i) add_scaled<R>(P[i], -PH[i] * inverse, PH);
+    add_scaled<R>(step, e * inverse, PH);
     innovation[s] = e;
     deviation[s] = std::sqrt(total);
     ++used;
   }
+  bool positive = !delicate_;
   for (int i = 0; i < n; ++i) {
     x[i] += step[i];
-    close = close || !(P[i][i] > T(0));
+    positive = positive && P[i][i] > T(0);
   }
-  return close && !repair(n) ? -1 : used;
+  return positive || repair(n) ? used : -1;
+}
+
+template <class T, int R>
+int Extended<T, R>::update_carefully(const PathModel<T>& model, const T* z, const T* predicted,
+                                     T* innovation, T* deviation) {
+  constexpr int kColumns = R + kMaxOutputs;
+  const int n = model.states;
+  T X[R][kColumns], Y[kMaxOutputs][kColumns], U[R][R], variance[kMaxOutputs], e[kMaxOutputs],
+      d[kMaxOutputs], step[R];
+  int present[kMaxOutputs], ny = 0;
+  std::memcpy(P, before_, sizeof P);
+  delicate_ = true;
+  const int raised = cholesky<R>(P, U, n);
+  if (raised < 0) return -1;
+  repairs += raised;
+  for (int i = 0; i < n; ++i)
+    for (int k = 0; k < n; ++k) X[i][k] = U[k][i];
+  for (int s = 0; s < model.sensors.size(); ++s) {
+    innovation[s] = deviation[s] = std::numeric_limits<T>::quiet_NaN();
+    if (!std::isfinite(z[s])) continue;
+    for (int k = 0; k < n; ++k) {
+      Y[ny][k] = T(0);
+      for (int j = k; j < n; ++j) Y[ny][k] += H_[s][j] * U[k][j];
+    }
+    variance[ny] = model.sensors[s].variance;
+    e[ny] = wrapped(model.sensors[s].quantity, z[s] - predicted[s]);
+    present[ny++] = s;
+  }
+  if (!careful_update(X, n, Y, ny, n, variance, e, step, d)) return -1;
+  covariance_of<R>(X, n, n + ny, P);
+  for (int i = 0; i < n; ++i) x[i] += step[i];
+  for (int s = 0; s < ny; ++s) {
+    innovation[present[s]] = e[s];
+    deviation[present[s]] = d[s];
+  }
+  return repair(n) ? ny : -1;
 }
 
 }  // namespace alula

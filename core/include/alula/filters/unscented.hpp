@@ -3,6 +3,7 @@
 // Additive noise, points drawn anew after the prediction so that the update sees process noise.
 // Source: van den Hoek 2017, Eq. (10) to (21); center weights as Julier and Uhlmann 2004,
 // covariances about the predicted means.
+#include <alula/filters/careful_update.hpp>
 #include <alula/filters/path_model.hpp>
 #include <alula/math/cholesky.hpp>
 #include <limits>
@@ -56,10 +57,33 @@ class Unscented {
   alignas(64) T spread_[R][R] = {};  // sqrt(n) times the lower factor, row by row
   alignas(64) T D_[kMotionStatesWithPosition][R];  // weighted differences of opposite points
   alignas(64) T C_[kMaxOutputs][R];
+  alignas(64) T DY_[kMaxOutputs][R];  // as D_, of the readings
+
+  int update_carefully(const PathModel<T>& model, const int* present, int ny, const T* middle,
+                       T* e, T* innovation, T* deviation);
+
+  // A standard deviation that means 'unknown' is taken as `most`, correlations kept: points
+  // farther out leave the range where the equations of motion, stepped, mean anything.
+  void bound(int i, int n, T most) {
+    if (!(P[i][i] > most * most)) return;
+    const T f = most / std::sqrt(P[i][i]);
+    for (int j = 0; j < i; ++j) P[j][i] *= f;
+    for (int j = i + 1; j < n; ++j) P[i][j] *= f;
+    P[i][i] = most * most;
+    ++repairs;
+  }
+  void bound(const PathModel<T>& model) {
+    bound(kPhi, model.states, T(1));
+    bound(kTheta, model.states, T(0.4));
+    bound(kPsi, model.states, T(1));
+    for (int k = kBiasP; k <= kScaleR; ++k)
+      if (model.slot[k] >= 0) bound(model.slot[k], model.states, k <= kBiasR ? T(1) : T(0.2));
+  }
 
   // Factor of P and the points' deviations from the mean.
   bool factor(const PathModel<T>& model) {
     const int n = model.states;
+    bound(model);
     const int raised = cholesky<R>(P, U_, n);
     if (raised < 0) return false;
     if (raised > 0) {
@@ -143,6 +167,9 @@ bool Unscented<T, R>::predict(const PathModel<T>& model, const T* u0, const T* u
     products(X_, i, N, n, middle, row);
     if (i < kMotionStates)
       for (int j = i; j < kMotionStates; ++j) row[j] += Q[i][j];
+    // The next points must differ from the mean: no variance below the last digit of the state.
+    const T digit = std::numeric_limits<T>::epsilon() * x[i];
+    row[i] += digit * digit;
   }
   for (int c = N; c < n; ++c) P[c][c] += dt * model.walk[c] * model.walk[c];
   return true;
@@ -172,20 +199,23 @@ int Unscented<T, R>::update(const PathModel<T>& model, const T* u, const T* z, T
     }
 
   T e[kMaxOutputs], middle[kMaxOutputs], S[kMaxOutputs][kMaxOutputs];
+  bool close = false;  // subtractions would cancel more than six digits
   for (int s = 0; s < ny; ++s) {
-    T difference[R];
     const T value = Y_[s][n];
     for (int b = n + 1; b < R; ++b) Y_[s][b] = Y_[s][R + b] = value;
-    const T mean = center(Y_[s], value, n, difference);
+    const T mean = center(Y_[s], value, n, DY_[s]);
     middle[s] = value - mean;
     e[s] = wrapped(model.sensors[present[s]].quantity, z[present[s]] - mean);
     clear<R>(C_[s]);
-    for (int j = 0; j < n; ++j) add_scaled<R>(C_[s], difference[j], U_[j]);
+    for (int j = 0; j < n; ++j) add_scaled<R>(C_[s], DY_[s][j], U_[j]);
   }
   for (int s = 0; s < ny; ++s) {
     products(Y_, s, ny, n, middle, S[s]);
-    S[s][s] += model.sensors[present[s]].variance;
+    const T variance = model.sensors[present[s]].variance;
+    close = close || !(variance > T(1e-6) * S[s][s]);
+    S[s][s] += variance;
   }
+  if (close) return update_carefully(model, present, ny, middle, e, innovation, deviation);
 
   // Readings one after another: each is freed from what those before it already told.
   for (int s = 0; s < ny; ++s) {
@@ -201,6 +231,35 @@ int Unscented<T, R>::update(const PathModel<T>& model, const T* u, const T* z, T
     add_scaled<R>(x, e[s] * inverse, C_[s]);
     innovation[present[s]] = e[s];
     deviation[present[s]] = std::sqrt(S[s][s]);
+  }
+  return ny;
+}
+
+template <class T, int R>
+int Unscented<T, R>::update_carefully(const PathModel<T>& model, const int* present, int ny,
+                                      const T* middle, T* e, T* innovation, T* deviation) {
+  // Opposite points, turned by 45 degrees: their differences carry the state, their sums and the
+  // mean point only the curvature of the readings.
+  constexpr int kColumns = 2 * R + 1 + kMaxOutputs;
+  const int n = model.states, columns = 2 * n + 1;
+  const T half = std::sqrt(T(0.25) / T(n));
+  T X[R][kColumns], Y[kMaxOutputs][kColumns], variance[kMaxOutputs], d[kMaxOutputs], step[R];
+  for (int i = 0; i < n; ++i)
+    for (int k = 0; k < columns; ++k) X[i][k] = k <= i ? U_[k][i] : T(0);
+  for (int s = 0; s < ny; ++s) {
+    for (int k = 0; k < n; ++k) {
+      Y[s][k] = DY_[s][k];
+      Y[s][n + k] = half * (Y_[s][k] + Y_[s][R + k]);
+    }
+    Y[s][2 * n] = std::sqrt(T(2)) * middle[s];
+    variance[s] = model.sensors[present[s]].variance;
+  }
+  if (!careful_update(X, n, Y, ny, columns, variance, e, step, d)) return -1;
+  covariance_of<R>(X, n, columns + ny, P);
+  for (int i = 0; i < n; ++i) x[i] += step[i];
+  for (int s = 0; s < ny; ++s) {
+    innovation[present[s]] = e[s];
+    deviation[present[s]] = d[s];
   }
   return ny;
 }

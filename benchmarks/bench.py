@@ -1,0 +1,145 @@
+"""Speed of the path filters against numba in the same run: `make bench`.
+
+Prints best and median of the rounds, writes build/bench.json. The peers take turns within every
+round, so that a slow spell of the machine hits all of them; a ratio counts only after the final
+state agrees with the NumPy reference to 1e-6.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import statistics
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"):
+    os.environ.setdefault(_name, "1")  # one thread each, set before NumPy loads
+
+sys.path.insert(0, str(Path(__file__).parent))
+import cases
+
+TOLERANCE = 1e-6  # of the baselines' README, relative, on the final state
+ROUNDS = 12
+BUILD = cases.ROOT / "build"
+
+
+def modules() -> list[str]:
+    """Compiled modules that this processor can run."""
+    from alula import _core
+
+    return ["_core_v3", "_core"] if _core.has_x86_64_v3() else ["_core"]
+
+
+def allocations() -> dict[str, dict[str, Any]]:
+    """What the C++ benchmark counts, by module; empty where it cannot be built."""
+    folder = BUILD / "bench"
+    cmake = Path(sys.executable).with_name("cmake")
+    program = str(cmake) if cmake.exists() else "cmake"
+    configure = ["-S", cases.ROOT, "-B", folder, "-DALULA_PYTHON=OFF", "-DALULA_BENCH=ON"]
+    try:
+        for command in (
+            [program, *configure, "-DCMAKE_BUILD_TYPE=Release"],
+            [program, "--build", folder],
+        ):
+            subprocess.run(command, check=True, capture_output=True)
+        counted = {}
+        for module in modules():
+            text = subprocess.run(
+                [folder / "core" / "bench" / f"alula_bench{module}", "3"],
+                check=True,
+                capture_output=True,
+            ).stdout
+            counted[module] = json.loads(text)
+    except (OSError, subprocess.CalledProcessError) as e:
+        detail = getattr(e, "stderr", b"") or b""
+        print(f"allocations are not counted: {e}\n{detail.decode()[-500:]}", file=sys.stderr)
+        return {}
+    return counted
+
+
+def filter_rows(rounds: int = ROUNDS) -> list[dict[str, Any]]:
+    """Every filter of every module against both numba filters, timed in turn."""
+    c = cases.case()
+    peers = cases.peers()
+    runs: dict[str, Any] = {
+        f"{name}{module}": cases.ours(module, name, c)
+        for module in modules()
+        for name in ("ukf", "ekf")
+    }
+    for name in ("ukf", "ekf"):
+        reference = getattr(peers, f"{name}_numpy")(c)[0]
+        for module in modules():
+            apart = cases.difference(runs[f"{name}{module}"](c)[0], reference)
+            if not apart <= TOLERANCE:
+                raise SystemExit(
+                    f"{name} of {module}: final state {apart:.1e} from {name}_numpy, "
+                    f"more than {TOLERANCE:.0e}: no ratio counts"
+                )
+    runs["ukf_numba"], runs["ekf_numba"] = peers.ukf_numba, peers.ekf_numba
+    seconds: dict[str, list[float]] = {name: [] for name in runs}
+    for name in ("ukf_numba", "ekf_numba"):
+        runs[name](c)  # compiles
+    for _ in range(rounds):
+        for name, run in runs.items():
+            begin = time.perf_counter()
+            run(c)
+            seconds[name].append(time.perf_counter() - begin)
+
+    print(f"{'path filter, 6000 steps':26s} {'best s':>9s} {'median s':>9s}")
+    for name, took in seconds.items():
+        print(f"{name:26s} {min(took):9.4f} {statistics.median(took):9.4f}")
+    counted = allocations()
+    pairs = [(f"ukf{m}", "ukf_numba") for m in modules()]
+    pairs += [(f"ekf{m}", p) for m in modules() for p in ("ukf_numba", "ekf_numba")]
+    rows = []
+    for name, peer in pairs:
+        ours_s, peer_s = min(seconds[name]), min(seconds[peer])
+        rows.append(
+            {
+                "name": name,
+                "ours_s": ours_s,
+                "peer": peer,
+                "peer_s": peer_s,
+                "ratio": peer_s / ours_s,
+                "ratio_median": statistics.median(seconds[peer]) / statistics.median(seconds[name]),
+                "allocations": counted.get(name[3:], {}).get(f"{name[:3]}_allocations"),
+            }
+        )
+    return rows
+
+
+def main() -> int:
+    """Run, print, write build/bench.json."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--rounds", type=int, default=ROUNDS)
+    rounds = parser.parse_args().rounds
+    rows: list[dict[str, Any]] = []
+    if not cases.available():
+        print(
+            f"no rows 'path filter against numba': the peers are not in {cases.BASELINES} "
+            "(set ALULA_BASELINES to the folder that holds path_reconstruction.py)"
+        )
+    else:
+        try:
+            rows = filter_rows(rounds)
+        except ModuleNotFoundError as e:
+            print(f"no rows 'path filter against numba': {e.name} is missing (pip install {e.name})")
+    if rows:
+        print(f"\n{'ours':12s} {'peer':12s} {'ratio':>7s} {'of medians':>11s} {'allocations':>12s}")
+        for row in rows:
+            print(
+                f"{row['name']:12s} {row['peer']:12s} {row['ratio']:7.2f} "
+                f"{row['ratio_median']:11.2f} {row['allocations']!s:>12s}"
+            )
+    BUILD.mkdir(exist_ok=True)
+    (BUILD / "bench.json").write_text(json.dumps(rows, indent=1) + "\n")
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
