@@ -43,6 +43,7 @@ class Problem:
     positions: tuple[Array, ...]  # of the sensors, from the inertial sensor
     gravity: float
     imu_sigma: Array
+    stated: bool  # whether the project states the first record's initial motion
     messages: tuple[Message, ...]
 
     @property
@@ -89,6 +90,13 @@ class Problem:
     def _reference(self, sensor: int) -> float:
         if self.sensors[sensor].reference == "zero":
             return 0.0
+        if self.stated:
+            bare = core.PathModel()
+            bare.motion = bare.states = bare.dynamic = self.motion
+            arm = [float(x) for x in self.positions[sensor]]
+            bare.add_sensor(KINDS[self.sensors[sensor].kind].quantity, arm, 1.0)
+            start = np.ascontiguousarray(self.initial[:1, : self.motion])
+            return float(core.path_readings(bare, self.records[0].inputs[:1], start)[0, 0])
         return _first(self.records[0].readings[:, sensor])
 
 
@@ -141,7 +149,8 @@ def make_problem(
         unknowns=free,
         fixed=tuple(u for u in unknowns if not u.free),
         motion=motion,
-        initial=np.array([_initial(r, sensors, motion, free) for r in records]),
+        initial=np.array([_started(r, sensors, motion, free, spec) for r in records]),
+        stated=records[0].maneuver.id in spec.initial,
         held=tuple(_held(flights[r.maneuver.log], r, spec.given, motion) for r in records),
         position=position,
         positions=tuple(aircraft.sensor_position(s.channel) - position for s in sensors),
@@ -196,6 +205,20 @@ def _initial(
             x[i], sigma = first.get(name, (0.0, 100.0))
             sd[i] = 5.0 * sigma
     return np.concatenate([x, sd])
+
+
+def _started(
+    record: Record,
+    sensors: Sequence[Sensor],
+    motion: int,
+    free: Sequence[Unknown],
+    spec: ReconstructSpec,
+) -> Array:
+    """As `_initial`, with the values that the project states."""
+    out = _initial(record, sensors, motion, free)
+    for name, entry in spec.initial.get(record.maneuver.id, {}).items():
+        out[MOTION.index(name)] = entry.value_si
+    return out
 
 
 def _windy_start(
