@@ -1,5 +1,6 @@
 # `make demo` and `make test` do all their own set-up. See README.md.
 PYTHON ?= python3
+JOBS ?= 2
 VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.alula
@@ -46,7 +47,7 @@ lint: $(STAMP)
 # so; with ALULA_REQUIRE_DATA set that is a failure.
 core-test: $(BIN)/python
 	@$(BIN)/cmake -S . -B build/core-tests -DALULA_PYTHON=OFF -DALULA_TESTS=ON -DCMAKE_BUILD_TYPE=Release
-	@$(BIN)/cmake --build build/core-tests --parallel
+	@$(BIN)/cmake --build build/core-tests --parallel $(JOBS)
 	@$(BIN)/ctest --test-dir build/core-tests --output-on-failure $(if $(ALULA_REQUIRE_DATA),--no-tests=error)
 
 # The committed description of the compiled core, as its build gives it.

@@ -21,7 +21,7 @@ for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUM
     os.environ.setdefault(_name, "1")  # one thread each, set before NumPy loads
 
 sys.path.insert(0, str(Path(__file__).parent))
-import cases
+import cases  # noqa: E402
 
 TOLERANCE = 1e-6  # of the baselines' README, relative, on the final state
 ROUNDS = 12
@@ -128,7 +128,9 @@ def main() -> int:
         try:
             rows = filter_rows(rounds)
         except ModuleNotFoundError as e:
-            print(f"no rows 'path filter against numba': {e.name} is missing (pip install {e.name})")
+            print(
+                f"no rows 'path filter against numba': {e.name} is missing (pip install {e.name})"
+            )
     if rows:
         print(f"\n{'ours':12s} {'peer':12s} {'ratio':>7s} {'of medians':>11s} {'allocations':>12s}")
         for row in rows:

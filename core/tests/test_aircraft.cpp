@@ -140,7 +140,7 @@ TEST(Aircraft, DualSlopesMatchDifferences) {
       down[j] -= h;
       const auto fu = alula::derivative(0.0, up, u, a), fd = alula::derivative(0.0, down, u, a);
       for (unsigned i = 0; i < 13; ++i)  // central differences: h^2 and rounding / h
-        EXPECT_NEAR(rate[i].slope[j - first], (fu[i] - fd[i]) / (2 * h), 2e-6) << i << " " << j;
+        EXPECT_NEAR(rate[i].slope_of(j - first), (fu[i] - fd[i]) / (2 * h), 2e-6) << i << " " << j;
     }
   }
 }
