@@ -14,6 +14,7 @@ import numpy as np
 from alula.base.arrays import Array
 from alula.base.messages import BadInput, Message, refuse, warn
 from alula.core import core
+from alula.reconstruct.filter_colour import lift, white
 from alula.reconstruct.problem import Problem
 from alula.reconstruct.solution import RecordSolution, Solution
 from alula.reconstruct.tempering import MOST_PASSES, SETTLED, Start, nearer, restored
@@ -110,10 +111,15 @@ def _solve(problem: Problem, method: Literal["ekf", "ukf"]) -> Solution:
     n, motion = model.states, model.motion
     prior = stated.deviation
     x, covariance = restored(out["x"], _unpack(out["covariance"], n), motion, used, stated)
+    walks = np.array([u.walk > 0.0 for u in problem.unknowns], dtype=bool)
     constants, constants_cov = _constants(problem, x, covariance, starts, lengths)
+    final = np.sqrt(np.diagonal(constants_cov))
+    raised = _lift(problem, out, starts, lengths, constants, final, prior, walks)
+    constants_cov = constants_cov * np.outer(raised, raised)
     se = np.sqrt(np.maximum(np.diagonal(covariance, axis1=1, axis2=2), 0.0))
     fitted = core.path_readings(model, inputs, np.ascontiguousarray(x))
-    doubt = _doubt(covariance, motion)
+    se[:, motion:] *= raised
+    doubt = _doubt(covariance, motion, raised)
     records = [
         RecordSolution(
             states=x[a:b],
@@ -126,8 +132,6 @@ def _solve(problem: Problem, method: Literal["ekf", "ukf"]) -> Solution:
         )
         for a, b in zip(starts, starts + lengths, strict=True)
     ]
-    walks = np.array([u.walk > 0.0 for u in problem.unknowns], dtype=bool)
-    final = np.sqrt(np.diagonal(constants_cov))
     messages: list[Message] = []
     if not settled:
         messages.append(
@@ -197,7 +201,32 @@ def _constants(
     ]
 
 
-def _doubt(covariance: Array, motion: int) -> Array:
+def _lift(
+    problem: Problem,
+    out: dict[str, Any],
+    starts: Array,
+    lengths: list[int],
+    constants: Array,
+    se: Array,
+    prior: Array,
+    walks: np.ndarray,
+) -> Array:
+    """Factors on the constants' standard errors where the innovations are not white."""
+
+    def split(run: dict[str, Any]) -> list[Array]:
+        e = run["innovation"] / run["deviation"]
+        return [e[a:b] for a, b in zip(starts, starts + lengths, strict=True)]
+
+    if white(split(out)):
+        return np.ones(len(se))
+
+    def innovations(start: Start) -> list[Array]:
+        return split(_run(problem, "ekf", start, smooth=False, keep=False)[0])
+
+    return lift(innovations, constants, se, prior, np.flatnonzero(~walks).tolist())
+
+
+def _doubt(covariance: Array, motion: int, raised: Array) -> Array:
     """(d, n, k): the states' shift along each column of the unknowns' covariance factor.
 
     What is left of the motion's uncertainty when the unknowns are known is fresh noise at every
@@ -209,6 +238,7 @@ def _doubt(covariance: Array, motion: int) -> Array:
     constants = covariance[:, motion:, motion:]
     values, vectors = np.linalg.eigh(constants[n // 2])
     root = vectors * np.sqrt(np.maximum(values, 0.0))  # columns: one standard deviation each
+    root = raised[:, None] * root
     gain = np.linalg.solve(constants, covariance[:, motion:, :])  # (n, constants, k)
     out: Array = np.einsum("cd,nck->dnk", root, gain)
     return out

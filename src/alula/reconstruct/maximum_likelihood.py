@@ -4,7 +4,8 @@ The kinematics are integrated open loop from each maneuver's initial state; init
 unknowns minimize the sum over the sensors of N ln(mean squared residual), which is the likelihood
 with the measurement covariance estimated along (Dittrich 2016, Eq. (3.54) to (3.61), step sign as
 the errata; Jategaonkar 2015, Ch. 10). Gauss-Newton with Levenberg-Marquardt damping; sensitivities
-are exact (core: run_open_loop). Standard errors allow for coloured residuals.
+are exact (core: run_open_loop). Standard errors allow for coloured residuals and for the noise of
+the inertial sensors, which the method itself takes as exact.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from alula.base.arrays import Array
 from alula.base.coloured import coloured_covariance
 from alula.base.messages import Message, warn
 from alula.core import core
+from alula.reconstruct.input_noise import scatter_by_inputs
 from alula.reconstruct.problem import Problem
 from alula.reconstruct.record import Record
 from alula.reconstruct.solution import RecordSolution, Solution
@@ -105,7 +107,8 @@ def solve_ml(problem: Problem, estimate_initial: bool = True) -> Solution:
     scale = np.sqrt(np.maximum(np.diagonal(information), 1e-300))
     dispersion = np.linalg.pinv(information / np.outer(scale, scale)) / np.outer(scale, scale)
     white = np.sqrt(np.maximum(np.diagonal(dispersion)[: layout.unknowns], 0.0))
-    covariance = _coloured(layout, fits, sigma, dispersion)
+    inputs = _by_inputs(problem, layout, fits, sigma)
+    covariance = _coloured(layout, fits, sigma, dispersion, dispersion @ inputs @ dispersion)
     status, messages = _verdict(converged, iterations)
     return Solution(
         records=tuple(
@@ -184,7 +187,24 @@ def _normal(layout: _Layout, fits: list[_Fit], sigma: Array) -> tuple[Array, Arr
     return information, gradient
 
 
-def _coloured(layout: _Layout, fits: list[_Fit], sigma: Array, dispersion: Array) -> Array:
+def _by_inputs(problem: Problem, layout: _Layout, fits: list[_Fit], sigma: Array) -> Array:
+    """Covariance of the gradient that the inertial sensors' noise causes."""
+    total, m = np.zeros((layout.size, layout.size)), problem.motion
+    for k, (record, fit) in enumerate(zip(problem.records, fits, strict=True)):
+        columns = layout.columns(k)
+        used = columns >= 0
+        J = fit.jacobian / sigma[None, :, None]
+        weighted = J[:, :, used].swapaxes(1, 2) @ J[:, :, :m]
+        own = scatter_by_inputs(
+            record.t, fit.motion, fit.motion_jacobian[:, :, :m], weighted, problem.imu_sigma
+        )
+        total[np.ix_(columns[used], columns[used])] += own
+    return total
+
+
+def _coloured(
+    layout: _Layout, fits: list[_Fit], sigma: Array, dispersion: Array, inputs: Array
+) -> Array:
     """Covariance with coloured residuals, sensor by sensor and maneuver by maneuver."""
     blocks = []
     for k, fit in enumerate(fits):
@@ -195,8 +215,9 @@ def _coloured(layout: _Layout, fits: list[_Fit], sigma: Array, dispersion: Array
             whole[:, columns[used]] = fit.jacobian[:, i, used] / sigma[i]
             blocks.append((whole, fit.residual[:, i] / sigma[i]))
     coloured = coloured_covariance(blocks, dispersion).covariance
-    # Never more certain than white noise of that size would allow.
-    lift = np.sqrt(np.maximum(np.diagonal(dispersion) / np.diagonal(coloured), 1.0))
+    # Never more certain than white noise of that size and the inertial sensors' noise allow.
+    least = np.diagonal(dispersion) + np.diagonal(inputs)
+    lift = np.sqrt(np.maximum(least / np.diagonal(coloured), 1.0))
     return np.asarray(coloured * np.outer(lift, lift))
 
 

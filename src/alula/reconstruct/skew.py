@@ -2,13 +2,14 @@
 
 A reading that is late by tau differs from the reconstruction by -tau times the rate of change of
 what it measures. The residuals of the open loop are therefore regressed on that rate, beside the
-constants that the reconstruction estimates anyway; the error bar allows for coloured residuals.
+constants that the reconstruction estimates anyway; the error bar allows for coloured residuals and
+for the inertial sensors' noise.
 Klein and Morelli, Aircraft System Identification, AIAA 2006, Sec. 10.2.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +17,7 @@ import numpy as np
 from alula.base.arrays import Array
 from alula.base.coloured import coloured_covariance
 from alula.core import core
+from alula.reconstruct.input_noise import scatter_by_inputs
 from alula.reconstruct.problem import Problem
 from alula.reconstruct.solution import Solution
 
@@ -43,7 +45,7 @@ def time_skews(problem: Problem, solution: Solution) -> tuple[Skew, ...]:
         for r, s, held in zip(problem.records, solution.records, problem.held, strict=True)
     ]
     for i, sensor in enumerate(problem.sensors):
-        blocks: list[tuple[Array, Array]] = []
+        blocks: list[_Block] = []
         for record, loop in zip(problem.records, loops, strict=True):
             residual = record.readings[:, i] - loop["readings"][:, i]
             if sensor.kind in ("phi", "psi"):
@@ -54,17 +56,40 @@ def time_skews(problem: Problem, solution: Solution) -> tuple[Skew, ...]:
             rate = -np.gradient(loop["readings"][:, i], record.t)[valid]
             J = loop["readings_jacobian"][valid, i, :]
             others = J[:, np.ptp(J, axis=0) > 0.0]
-            blocks.append((np.column_stack([rate, np.ones(valid.sum()), others]), residual[valid]))
+            X = np.column_stack([rate, np.ones(valid.sum()), others])
+            walk = _walk_of(problem, record.t, loop, i, valid)
+            blocks.append((X, residual[valid], walk))
         skew = _regress(sensor.channel, blocks)
         if skew is not None:
             out.append(skew)
     return tuple(out)
 
 
-def _regress(channel: str, blocks: Sequence[tuple[Array, Array]]) -> Skew | None:
+_Block = tuple[Array, Array, Callable[[Array], float]]
+
+
+def _walk_of(
+    problem: Problem, t: Array, loop: dict[str, Array], sensor: int, valid: np.ndarray
+) -> Callable[[Array], float]:
+    """Variance of weights @ residual by the inertial noise, for weights of valid samples."""
+    m = problem.motion
+
+    def variance(weights: Array) -> float:
+        whole = np.zeros(len(t))
+        whole[valid] = weights
+        weighted = whole[:, None, None] * loop["readings_jacobian"][:, sensor, None, :m]
+        by_start = loop["motion_jacobian"][:, :, :m]
+        return float(
+            scatter_by_inputs(t, loop["motion"], by_start, weighted, problem.imu_sigma)[0, 0]
+        )
+
+    return variance
+
+
+def _regress(channel: str, blocks: Sequence[_Block]) -> Skew | None:
     """Delay common to all maneuvers; everything else is each maneuver's own and projected out."""
     projected = []
-    for X, y in blocks:
+    for X, y, walk in blocks:
         if np.ptp(X[:, 0]) == 0.0:
             continue
         rest = X[:, 1:] / np.maximum(np.linalg.norm(X[:, 1:], axis=0), 1e-300)
@@ -73,11 +98,13 @@ def _regress(channel: str, blocks: Sequence[tuple[Array, Array]]) -> Skew | None
         rate = X[:, 0] - basis @ (basis.T @ X[:, 0])
         # A rate that the unknowns imitate tells nothing of the clock.
         if np.linalg.norm(rate) > 0.05 * np.linalg.norm(X[:, 0] - X[:, 0].mean()):
-            projected.append((rate[:, None], y - basis @ (basis.T @ y)))
+            projected.append((rate, y - basis @ (basis.T @ y), walk(rate)))
     if not projected:
         return None
-    information = sum(float(x[:, 0] @ x[:, 0]) for x, _ in projected)
-    delay = sum(float(x[:, 0] @ y) for x, y in projected) / information
-    residuals = [(x, y - delay * x[:, 0]) for x, y in projected]
+    information = sum(float(x @ x) for x, _, _ in projected)
+    delay = sum(float(x @ y) for x, y, _ in projected) / information
+    residuals = [(x[:, None], y - delay * x) for x, y, _ in projected]
     coloured = coloured_covariance(residuals, np.array([[1.0 / information]])).corrected
-    return Skew(channel, delay, float(np.sqrt(coloured[0, 0])))
+    white = sum(float(y @ y) for _, y in residuals) / sum(len(y) for _, y in residuals)
+    walked = sum(walk for _, _, walk in projected) / information**2 + white / information
+    return Skew(channel, delay, float(np.sqrt(max(coloured[0, 0], walked))))
