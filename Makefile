@@ -36,7 +36,7 @@ verify: $(STAMP)
 	$(BIN)/python benchmarks/verify.py
 
 lint: $(STAMP)
-	@$(BIN)/python -m pip install --quiet "ruff>=0.6" "mypy>=1.11" "import-linter>=2.0" pandas-stubs scipy-stubs "clang-format>=18"
+	@$(BIN)/python -m pip install --quiet "ruff>=0.6" "mypy>=1.11" "import-linter>=2.0" pandas-stubs scipy-stubs "clang-format==23.1.5"
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy

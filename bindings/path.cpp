@@ -44,8 +44,8 @@ void add_sensor(Model& model, int quantity, const std::vector<double>& position,
 
 template <class Filter>
 Result run_rows(const Model& model, Vector t, Matrix inputs, Matrix readings,
-             nb::ndarray<const int, nb::ndim<1>, nb::c_contig> start, Matrix initial, Vector x0,
-             Vector sigma0, bool smooth, bool keep_covariance) {
+                nb::ndarray<const int, nb::ndim<1>, nb::c_contig> start, Matrix initial, Vector x0,
+                Vector sigma0, bool smooth, bool keep_covariance) {
   const int samples = static_cast<int>(t.shape(0)), n = model.states, ny = model.sensors.size();
   row_of("inputs", inputs.shape(1), kInertialInputs);
   row_of("readings", readings.shape(1), ny);
@@ -53,20 +53,21 @@ Result run_rows(const Model& model, Vector t, Matrix inputs, Matrix readings,
   row_of("x0", x0.shape(0), n);
   if (samples == 0 || start.shape(0) != t.shape(0) || inputs.shape(0) != t.shape(0) ||
       readings.shape(0) != t.shape(0) || start.data()[0] != 0)
-    throw std::invalid_argument("t, inputs, readings, start: expected one row a sample, start[0] 0");
+    throw std::invalid_argument(
+        "t, inputs, readings, start: expected one row a sample, start[0] 0");
   const int packed = n * (n + 1) / 2;
   const bool all = smooth || keep_covariance;
-  Array<double> x({samples, n}), covariance({all ? samples : 0, packed}),
-      innovation({samples, ny}), deviation({samples, ny}), nis({samples});
+  Array<double> x({samples, n}), covariance({all ? samples : 0, packed}), innovation({samples, ny}),
+      deviation({samples, ny}), nis({samples});
   auto filter = std::make_unique<Filter>();
   for (int i = 0; i < n; ++i) {
     filter->x[i] = x0.data()[i];
     filter->P[i][i] = sigma0.data()[i] * sigma0.data()[i];
   }
-  const PathRecord<double> record{samples,        t.data(),     inputs.data(),
+  const PathRecord<double> record{samples,         t.data(),     inputs.data(),
                                   readings.data(), start.data(), initial.data()};
-  const PathHistory<double> history{x.data(), all ? covariance.data() : nullptr,
-                                    innovation.data(), deviation.data(), nis.data()};
+  const PathHistory<double> history{x.data(), all ? covariance.data() : nullptr, innovation.data(),
+                                    deviation.data(), nis.data()};
   int done = 0, reached = 0;
   Array<double> final_covariance({n, n});
   {
@@ -100,8 +101,8 @@ Result run_rows(const Model& model, Vector t, Matrix inputs, Matrix readings,
 // The filter with the shorter of the two row lengths that hold the states.
 template <template <class, int> class Filter>
 Result run(const Model& model, Vector t, Matrix inputs, Matrix readings,
-             nb::ndarray<const int, nb::ndim<1>, nb::c_contig> start, Matrix initial, Vector x0,
-             Vector sigma0, bool smooth, bool keep_covariance) {
+           nb::ndarray<const int, nb::ndim<1>, nb::c_contig> start, Matrix initial, Vector x0,
+           Vector sigma0, bool smooth, bool keep_covariance) {
   const auto chosen = model.states < kShortRow ? &run_rows<Filter<double, kShortRow>>
                                                : &run_rows<Filter<double, kLongRow>>;
   return chosen(model, t, inputs, readings, start, initial, x0, sigma0, smooth, keep_covariance);
@@ -111,7 +112,8 @@ nb::ndarray<nb::numpy, double> readings_of(const Model& model, Matrix inputs, Ma
   const int samples = static_cast<int>(x.shape(0)), ny = model.sensors.size();
   row_of("inputs", inputs.shape(1), kInertialInputs);
   row_of("x", x.shape(1), model.states);
-  if (inputs.shape(0) != x.shape(0)) throw std::invalid_argument("inputs: expected one row a state");
+  if (inputs.shape(0) != x.shape(0))
+    throw std::invalid_argument("inputs: expected one row a state");
   Array<double> out({samples, ny});
   for (int k = 0; k < samples; ++k) {
     const double* state = x.data() + k * model.states;
@@ -119,14 +121,13 @@ nb::ndarray<nb::numpy, double> readings_of(const Model& model, Matrix inputs, Ma
     true_inputs(model, state, inputs.data() + k * kInertialInputs, m);
     for (int i = 0; i < 3; ++i) wind[i] = unknown(model, state, kWindNorth + i);
     const PathAir<double> air = path_air(model, state, wind, m);
-    for (int s = 0; s < ny; ++s)
-      out.data()[k * ny + s] = path_output(model.sensors[s], state, air);
+    for (int s = 0; s < ny; ++s) out.data()[k * ny + s] = path_output(model.sensors[s], state, air);
   }
   return out.numpy();
 }
 
-Result open_loop(const Model& model, Vector t, Matrix inputs, Vector x0,
-                   std::optional<Matrix> held, bool jacobian) {
+Result open_loop(const Model& model, Vector t, Matrix inputs, Vector x0, std::optional<Matrix> held,
+                 bool jacobian) {
   const int samples = static_cast<int>(t.shape(0)), n = model.states, ny = model.sensors.size();
   row_of("inputs", inputs.shape(1), kInertialInputs);
   row_of("x0", x0.shape(0), n);
@@ -139,8 +140,8 @@ Result open_loop(const Model& model, Vector t, Matrix inputs, Vector x0,
       motion_jacobian({rows, model.motion, n}), readings_jacobian({rows, ny, n});
   {
     nb::gil_scoped_release release;
-    run_open_loop(model, t.data(), inputs.data(), samples, x0.data(),
-                  held ? held->data() : nullptr, motion.data(), readings.data(), jacobian ? motion_jacobian.data() : nullptr,
+    run_open_loop(model, t.data(), inputs.data(), samples, x0.data(), held ? held->data() : nullptr,
+                  motion.data(), readings.data(), jacobian ? motion_jacobian.data() : nullptr,
                   jacobian ? readings_jacobian.data() : nullptr);
   }
   Result out;
@@ -163,37 +164,49 @@ void bind_path(nb::module_& m) {
       .def_rw("dynamic", &Model::dynamic)
       .def_rw("gravity", &Model::gravity)
       .def_rw("wind", &Model::wind)
-      .def("set_unknown", [](Model& s, int k, int slot, double fixed) {
-             if (k < 0 || k >= kPathUnknowns || slot >= kMaxStates)
-               throw std::invalid_argument("unknown or slot out of range");
-             s.slot[k] = slot;
-             s.fixed[k] = fixed;
-           }, nb::arg("unknown"), nb::arg("slot"), nb::arg("fixed") = 0.0)
-      .def("set_walk", [](Model& s, int state, double walk) {
-             if (state < 0 || state >= kMaxStates) throw std::invalid_argument("state out of range");
-             s.walk[state] = walk;
-           }, nb::arg("state"), nb::arg("walk"))
-      .def("set_input_sigma", [](Model& s, const std::vector<double>& sigma) {
-             for (int i = 0; i < kInertialInputs; ++i)
-               s.input_sigma[i] = sigma.at(static_cast<std::size_t>(i));
-           }, nb::arg("sigma"))
+      .def(
+          "set_unknown",
+          [](Model& s, int k, int slot, double fixed) {
+            if (k < 0 || k >= kPathUnknowns || slot >= kMaxStates)
+              throw std::invalid_argument("unknown or slot out of range");
+            s.slot[k] = slot;
+            s.fixed[k] = fixed;
+          },
+          nb::arg("unknown"), nb::arg("slot"), nb::arg("fixed") = 0.0)
+      .def(
+          "set_walk",
+          [](Model& s, int state, double walk) {
+            if (state < 0 || state >= kMaxStates) throw std::invalid_argument("state out of range");
+            s.walk[state] = walk;
+          },
+          nb::arg("state"), nb::arg("walk"))
+      .def(
+          "set_input_sigma",
+          [](Model& s, const std::vector<double>& sigma) {
+            for (int i = 0; i < kInertialInputs; ++i)
+              s.input_sigma[i] = sigma.at(static_cast<std::size_t>(i));
+          },
+          nb::arg("sigma"))
       .def("add_sensor", &add_sensor, nb::arg("quantity"), nb::arg("position"), nb::arg("sigma"),
            nb::arg("reference") = 0.0, nb::arg("scale") = 0.0, nb::arg("bias") = 0.0,
            nb::arg("scale_slot") = -1, nb::arg("bias_slot") = -1);
 
   const char* doc =
-      "Filter a record: t (n,), inputs (n, 6), readings (n, sensors) with NaN for none, start (n,)\n"
-      "the row of `initial` where a maneuver begins and -1 elsewhere, initial (maneuvers, 2 motion)\n"
+      "Filter a record: t (n,), inputs (n, 6), readings (n, sensors) with NaN for none, start "
+      "(n,)\n"
+      "the row of `initial` where a maneuver begins and -1 elsewhere, initial (maneuvers, 2 "
+      "motion)\n"
       "values and standard deviations, x0 and sigma0 (states,) the constants' prior. Returns\n"
       "histories; `done` < n where the filter lost its covariance.";
   m.def("path_ekf", &run<Extended>, nb::arg("model"), nb::arg("t"), nb::arg("inputs"),
-        nb::arg("readings"), nb::arg("start"), nb::arg("initial"), nb::arg("x0"),
-        nb::arg("sigma0"), nb::arg("smooth") = false, nb::arg("keep_covariance") = false, doc);
+        nb::arg("readings"), nb::arg("start"), nb::arg("initial"), nb::arg("x0"), nb::arg("sigma0"),
+        nb::arg("smooth") = false, nb::arg("keep_covariance") = false, doc);
   m.def("path_ukf", &run<Unscented>, nb::arg("model"), nb::arg("t"), nb::arg("inputs"),
-        nb::arg("readings"), nb::arg("start"), nb::arg("initial"), nb::arg("x0"),
-        nb::arg("sigma0"), nb::arg("smooth") = false, nb::arg("keep_covariance") = false, doc);
-  m.def("path_readings", &readings_of, nb::arg("model"), nb::arg("inputs"), nb::arg("x"),
-        "What the sensors read (n, sensors) under measured inputs (n, 6) and states x (n, states).");
+        nb::arg("readings"), nb::arg("start"), nb::arg("initial"), nb::arg("x0"), nb::arg("sigma0"),
+        nb::arg("smooth") = false, nb::arg("keep_covariance") = false, doc);
+  m.def(
+      "path_readings", &readings_of, nb::arg("model"), nb::arg("inputs"), nb::arg("x"),
+      "What the sensors read (n, sensors) under measured inputs (n, 6) and states x (n, states).");
   m.def("path_open_loop", &open_loop, nb::arg("model"), nb::arg("t"), nb::arg("inputs"),
         nb::arg("x0"), nb::arg("held") = nb::none(), nb::arg("jacobian") = true,
         "Integrate the kinematics from x0 without using a measurement, with exact Jacobians.");

@@ -33,8 +33,7 @@ void build(Model* self, double mass, Matrix inertia, Vector geometry, Vector ref
   const Vec3<double> reference = vec3(geometry, "geometry: expected S, b, c");
   if (values.shape(0) != table.term_count) throw nb::value_error("values: one per term expected");
   alula::Mat3<double> J;
-  for (std::size_t i = 0; i < 3; ++i)
-    J.row[i] = {inertia(i, 0), inertia(i, 1), inertia(i, 2)};
+  for (std::size_t i = 0; i < 3; ++i) J.row[i] = {inertia(i, 0), inertia(i, 1), inertia(i, 2)};
   new (self) Model();
   self->body = alula::mass_properties(mass, J);
   self->S = reference.x;
@@ -63,8 +62,16 @@ void write_outputs(const Model& a, const BodyState<double>& x, const BodyInput<d
   const Vec3<double> w{x[10], x[11], x[12]};
   const auto dw = alula::angular_acceleration(a.body, load.moment, w);
   const double k = 1.0 / a.body.mass;
-  const double row[11] = {k * load.force.x, k * load.force.y, k * load.force.z, dw.x, dw.y, dw.z,
-                          load.flow.V, load.flow.alpha, load.flow.beta, load.mach,
+  const double row[11] = {k * load.force.x,
+                          k * load.force.y,
+                          k * load.force.z,
+                          dw.x,
+                          dw.y,
+                          dw.z,
+                          load.flow.V,
+                          load.flow.alpha,
+                          load.flow.beta,
+                          load.mach,
                           load.air.density};
   std::memcpy(out, row, sizeof row);
   std::memcpy(out + 11, load.coefficients.data(), 6 * sizeof(double));
@@ -72,8 +79,8 @@ void write_outputs(const Model& a, const BodyState<double>& x, const BodyInput<d
 
 // Samples flown before the state stopped being finite; all of them where it never did. Inputs are
 // straight lines between their samples.
-std::size_t fly(const Model& a, Vector x0, Matrix inputs, double dt, int substeps,
-                MatrixOut states, MatrixOut outputs) {
+std::size_t fly(const Model& a, Vector x0, Matrix inputs, double dt, int substeps, MatrixOut states,
+                MatrixOut outputs) {
   const std::size_t n = inputs.shape(0);
   if (x0.shape(0) != kStates || inputs.shape(1) != kInputs || states.shape(1) != kStates ||
       outputs.shape(1) != kOutputs || states.shape(0) != n || outputs.shape(0) != n)

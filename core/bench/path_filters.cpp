@@ -52,8 +52,9 @@ int main(int count, char** arguments) {
   const long control = alula_test::allocations() - before;
   const Timing u = best_of<Unscented<double, kShortRow>>(rounds);
   const Timing e = best_of<Extended<double, kShortRow>>(rounds);
-  std::printf("{\"control\": %ld, \"ukf_s\": %.6f, \"ukf_allocations\": %ld, \"ekf_s\": %.6f, "
-              "\"ekf_allocations\": %ld}\n",
-              control, u.seconds, u.allocations, e.seconds, e.allocations);
+  std::printf(
+      "{\"control\": %ld, \"ukf_s\": %.6f, \"ukf_allocations\": %ld, \"ekf_s\": %.6f, "
+      "\"ekf_allocations\": %ld}\n",
+      control, u.seconds, u.allocations, e.seconds, e.allocations);
   return control > 0 ? 0 : 1;
 }

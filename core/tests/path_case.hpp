@@ -47,9 +47,8 @@ alula::PathModel<T> fourteen_states() {
   }
   model.walk[13] = T(1e-5);
   using alula::Quantity;
-  const Quantity quantities[] = {Quantity::height,       Quantity::phi,
-                                 Quantity::theta,        Quantity::psi,
-                                 Quantity::airspeed,     Quantity::alpha_linear,
+  const Quantity quantities[] = {Quantity::height,    Quantity::phi,      Quantity::theta,
+                                 Quantity::psi,       Quantity::airspeed, Quantity::alpha_linear,
                                  Quantity::beta_flank};
   const double sigma[] = {2, 0.002, 0.002, 0.005, 0.2, 0.002, 0.002};
   for (int s = 0; s < 7; ++s) {
@@ -69,8 +68,12 @@ struct Flight {
   std::vector<int> start;
 
   alula::PathRecord<T> record() const {
-    return {static_cast<int>(t.size()), t.data(),     inputs.data(),
-            readings.data(),            start.data(), initial.data()};
+    return {static_cast<int>(t.size()),
+            t.data(),
+            inputs.data(),
+            readings.data(),
+            start.data(),
+            initial.data()};
   }
 };
 
@@ -84,9 +87,10 @@ Flight<T> flight(const alula::PathModel<T>& model, int samples, unsigned seed) {
   double height = 1000;
   for (int k = 0; k < samples; ++k) {
     Motion motion = motion_at(k * dt);
-    const double climb = motion.y[1] * std::sin(motion.y[5]) -
-                         (motion.y[2] * std::sin(motion.y[4]) + motion.y[3] * std::cos(motion.y[4])) *
-                             std::cos(motion.y[5]);
+    const double climb =
+        motion.y[1] * std::sin(motion.y[5]) -
+        (motion.y[2] * std::sin(motion.y[4]) + motion.y[3] * std::cos(motion.y[4])) *
+            std::cos(motion.y[5]);
     motion.y[0] = height;
     height += climb * dt;
     f.t.push_back(static_cast<T>(k * dt));
@@ -95,8 +99,8 @@ Flight<T> flight(const alula::PathModel<T>& model, int samples, unsigned seed) {
     for (int i = 0; i < 7; ++i) truth[i] = static_cast<T>(motion.y[i]);
     for (int i = 0; i < 6; ++i) {
       m[i] = static_cast<T>(motion.m[i]);
-      f.inputs.push_back(
-          static_cast<T>(motion.m[i] + bias[i] + static_cast<double>(model.input_sigma[i]) * normal(random)));
+      f.inputs.push_back(static_cast<T>(
+          motion.m[i] + bias[i] + static_cast<double>(model.input_sigma[i]) * normal(random)));
     }
     const auto air = alula::path_air(model, truth, wind, m);
     for (int s = 0; s < model.sensors.size(); ++s) {

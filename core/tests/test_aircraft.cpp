@@ -18,7 +18,8 @@ template <class T>
 alula::AircraftModel<T> light_aircraft() {
   alula::AircraftModel<T> a;
   a.body = alula::mass_properties(
-      T(560), alula::Mat3<T>{{{T(655), T(0), T(-30)}, {T(0), T(723), T(0)}, {T(-30), T(0), T(1139)}}});
+      T(560),
+      alula::Mat3<T>{{{T(655), T(0), T(-30)}, {T(0), T(723), T(0)}, {T(-30), T(0), T(1139)}}});
   a.S = T(10.6);
   a.b = T(8.65);
   a.c = T(1.25);
@@ -31,11 +32,12 @@ alula::AircraftModel<T> light_aircraft() {
     double value;
   };
   using namespace alula;
-  const Entry entries[] = {
-      {0, kOne, .051},  {0, kAlpha, .69}, {2, kOne, .488},  {2, kAlpha, 5.07}, {2, kDe, .473},
-      {4, kOne, -.1},   {4, kAlpha, -.43}, {4, kQhat, -25.}, {4, kDe, -2.08},   {1, kBeta, -.55},
-      {3, kPhat, -.47}, {3, kBeta, -.085}, {5, kBeta, .08},  {5, kRhat, -.11},  {0, kVariables, .5},
-      {1, kVariables + 1, .01}, {1, kVariables + 2, .02}};
+  const Entry entries[] = {{0, kOne, .051},          {0, kAlpha, .69},        {2, kOne, .488},
+                           {2, kAlpha, 5.07},        {2, kDe, .473},          {4, kOne, -.1},
+                           {4, kAlpha, -.43},        {4, kQhat, -25.},        {4, kDe, -2.08},
+                           {1, kBeta, -.55},         {3, kPhat, -.47},        {3, kBeta, -.085},
+                           {5, kBeta, .08},          {5, kRhat, -.11},        {0, kVariables, .5},
+                           {1, kVariables + 1, .01}, {1, kVariables + 2, .02}};
   a.table.steps[0] = {0.0, Operation::multiply, kAlpha, kAlpha};
   a.table.steps[1] = {0.0, Operation::absolute, kBeta, 0};
   a.table.steps[2] = {0.05, Operation::ramp, kAlpha, 0};
@@ -50,8 +52,8 @@ alula::AircraftModel<T> light_aircraft() {
 
 template <class T>
 alula::BodyState<T> level_flight() {
-  return {T(0), T(0), T(-900), T(0.999), T(0.02), T(0.03), T(0.01), T(45), T(1), T(1.5),
-          T(0.1), T(0.05), T(-0.05)};
+  return {T(0),  T(0), T(-900), T(0.999), T(0.02), T(0.03), T(0.01),
+          T(45), T(1), T(1.5),  T(0.1),   T(0.05), T(-0.05)};
 }
 
 template <class T>
@@ -130,7 +132,7 @@ TEST(Aircraft, DualSlopesMatchDifferences) {
     alula::BodyState<D> xd;
     for (unsigned i = 0; i < 13; ++i) {
       xd[i] = D(x[i]);
-      if (i >= first && i < first + 8) xd[i].slope[i - first] = 1.0;
+      if (i >= first && i < first + 8) xd[i].set_slope(i - first, 1.0);
     }
     const auto rate = alula::derivative(0.0, xd, ud, a);
     for (unsigned j = first; j < 13 && j < first + 8; ++j) {

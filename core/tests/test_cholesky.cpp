@@ -54,9 +54,7 @@ TYPED_TEST(Cholesky, FactorTimesItselfComesBackAndSolves) {
       T b[R] = {};
       for (int i = 0; i < n; ++i) {
         for (int j = 0; j < n; ++j) {
-          if (j < i) {
-            EXPECT_EQ(u.m[i][j], T(0));
-          }
+          if (j < i) { EXPECT_EQ(u.m[i][j], T(0)); }
           // Rounding of n products, relative to the diagonal (Higham 2002, Theorem 10.3).
           const double size = std::sqrt(double(a.m[i][i]) * double(a.m[j][j]));
           EXPECT_NEAR(back.m[i][j], a.m[i][j], 2 * (n + 1) * eps * size);
@@ -95,8 +93,8 @@ TYPED_TEST(Cholesky, RaisesAPivotThatRoundingHasEaten) {
 
 TYPED_TEST(Cholesky, RefusesADiagonalThatIsNoVariance) {
   using T = TypeParam;
-  for (const T bad : {T(0), T(-1), std::numeric_limits<T>::quiet_NaN(),
-                      std::numeric_limits<T>::infinity()}) {
+  for (const T bad :
+       {T(0), T(-1), std::numeric_limits<T>::quiet_NaN(), std::numeric_limits<T>::infinity()}) {
     Matrix<T> a, u;
     for (int i = 0; i < 3; ++i) a.m[i][i] = T(1);
     a.m[1][1] = bad;

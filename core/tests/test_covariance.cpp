@@ -37,9 +37,12 @@ struct Tuning {
 };
 
 const Tuning kTunings[] = {
-    {"as meant", 1, 1, 1},          {"nothing known, perfect sensors, no noise", 1e10, 1e-12, 0},
-    {"deaf", 1, 1e12, 1},           {"deaf and ignorant", 1e10, 1e12, 0},
-    {"certain, wild", 1e-12, 1, 1e6}, {"mixed", -1, -1, 1},
+    {"as meant", 1, 1, 1},
+    {"nothing known, perfect sensors, no noise", 1e10, 1e-12, 0},
+    {"deaf", 1, 1e12, 1},
+    {"deaf and ignorant", 1e10, 1e12, 0},
+    {"certain, wild", 1e-12, 1, 1e6},
+    {"mixed", -1, -1, 1},
 };
 
 template <class Filter>

@@ -87,7 +87,8 @@ S everything(const S* x) {
   S s, c;
   sincos(x[0] * x[1], s, c);
   const S root = sqrt(x[2] * x[2] + x[3] * x[3] + S(1.0));
-  return exp(s / root) * atan2(x[2] - c, x[3] + S(2.0)) + log(root) * asin(S(0.3) * s) - x[1] / root;
+  return exp(s / root) * atan2(x[2] - c, x[3] + S(2.0)) + log(root) * asin(S(0.3) * s) -
+         x[1] / root;
 }
 
 // Plain numbers under the same names.

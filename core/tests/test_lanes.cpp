@@ -62,7 +62,8 @@ TYPED_TEST(LaneMathematics, ArctangentKeepsTheStatedError) {
   using L = Lanes<T, 4>;
   std::vector<T> y, x;
   const T far = kDouble<T> ? T(1e150) : T(1e15);
-  const T special[] = {T(0), T(1), T(-1), T(1e-20), T(-1e-20), far, -far, T(0.41421356), T(2.41421356)};
+  const T special[] = {T(0), T(1), T(-1),         T(1e-20),     T(-1e-20),
+                       far,  -far, T(0.41421356), T(2.41421356)};
   for (const T a : special)
     for (const T b : special) {
       y.push_back(a);

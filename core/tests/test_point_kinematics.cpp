@@ -135,8 +135,8 @@ Everything everything(std::mt19937& random) {
   std::copy(e.s.y, e.s.y + 9, e.x);
   for (int k = 0; k < kPathUnknowns; ++k) {
     e.model.slot[k] = 9 + k;
-    e.x[9 + k] = k < 3 ? 0.1 * unit(random)
-                 : k < 6 ? 0.01 * unit(random)
+    e.x[9 + k] = k < 3    ? 0.1 * unit(random)
+                 : k < 6  ? 0.01 * unit(random)
                  : k < 12 ? 0.05 * unit(random)
                           : 6 * unit(random);
   }
@@ -212,8 +212,8 @@ TEST(PathModel, OutputJacobianIsThatOfCentralDifferencesForEveryQuantity) {
             difference(output, e.x, j, 1e-5, 1, column);
             // Rounding of values of 1e3 by 1e-5: 1e-8; slopes reach 100.
             EXPECT_NEAR(H[0][j], column[0], 1e-7 * (1 + std::abs(column[0])))
-                << "quantity " << quantity << " lever " << lever << " errors " << errors << " state "
-                << j;
+                << "quantity " << quantity << " lever " << lever << " errors " << errors
+                << " state " << j;
           }
         }
 }

@@ -11,7 +11,21 @@
 namespace alula {
 
 // Base variables, the first slots. Rates are pb/2V, qc/2V, rb/2V; angles rad; V m/s.
-enum Variable : int { kOne, kV, kAlpha, kBeta, kPhat, kQhat, kRhat, kDe, kDa, kDr, kDf, kDt, kMach };
+enum Variable : int {
+  kOne,
+  kV,
+  kAlpha,
+  kBeta,
+  kPhat,
+  kQhat,
+  kRhat,
+  kDe,
+  kDa,
+  kDr,
+  kDf,
+  kDt,
+  kMach
+};
 inline constexpr int kVariables = 13;
 
 // Body axes: CX CY CZ Cl Cm Cn. Stability axes: CD in the place of CX, CL in the place of CZ.
@@ -67,15 +81,9 @@ constexpr void fill_slots(const TermTable& table, S* slots) {
     const S& a = slots[step.a];
     S& out = slots[kVariables + i];
     switch (step.operation) {
-      case Operation::multiply:
-        out = a * slots[step.b];
-        break;
-      case Operation::absolute:
-        out = a < S(0) ? -a : a;
-        break;
-      case Operation::ramp:
-        out = a > S(step.knot) ? a - S(step.knot) : S(0);
-        break;
+      case Operation::multiply: out = a * slots[step.b]; break;
+      case Operation::absolute: out = a < S(0) ? -a : a; break;
+      case Operation::ramp: out = a > S(step.knot) ? a - S(step.knot) : S(0); break;
     }
   }
 }

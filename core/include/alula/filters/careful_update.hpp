@@ -22,8 +22,7 @@ inline bool careful_update(T (*X)[Columns], int n, T (*Y)[Columns], int ny, int 
     for (int k = columns; k < m; ++k) X[i][k] = T(0);
   }
   for (int s = 0; s < ny; ++s)
-    for (int k = columns; k < m; ++k)
-      Y[s][k] = k == columns + s ? std::sqrt(variance[s]) : T(0);
+    for (int k = columns; k < m; ++k) Y[s][k] = k == columns + s ? std::sqrt(variance[s]) : T(0);
   for (int s = 0; s < ny; ++s) {
     T squared = T(0);
     for (int k = 0; k < m; ++k) squared += Y[s][k] * Y[s][k];
@@ -45,8 +44,8 @@ inline bool careful_update(T (*X)[Columns], int n, T (*Y)[Columns], int ny, int 
   return true;
 }
 
-// P = X X', rows of length R, full. P comes with its diagonal before the update: a variance that has
-// sunk out of sight of it is held where rounding ends.
+// P = X X', rows of length R, full. P comes with its diagonal before the update: a variance that
+// has sunk out of sight of it is held where rounding ends.
 template <int R, int Columns, class T>
 inline void covariance_of(const T (*X)[Columns], int n, int columns, T (*P)[R]) {
   for (int i = 0; i < n; ++i) {

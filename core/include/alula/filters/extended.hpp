@@ -20,9 +20,8 @@ class Extended {
   int repairs = 0;
 
   bool predict(const PathModel<T>& model, const T* u0, const T* u1, T dt) {
-    return model.motion == kMotionStates
-               ? predict<kMotionStates>(model, u0, u1, dt)
-               : predict<kMotionStatesWithPosition>(model, u0, u1, dt);
+    return model.motion == kMotionStates ? predict<kMotionStates>(model, u0, u1, dt)
+                                         : predict<kMotionStatesWithPosition>(model, u0, u1, dt);
   }
 
   // As Unscented::update.
@@ -113,7 +112,8 @@ int Extended<T, R>::update(const PathModel<T>& model, const T* u, const T* z, T*
     T total = variance;
     for (int j = 0; j < n; ++j) total += h[j] * PH[j];
     // Here the subtraction below would cancel more than six digits.
-    if (!(variance > T(1e-6) * total)) return update_carefully(model, z, predicted, innovation, deviation);
+    if (!(variance > T(1e-6) * total))
+      return update_carefully(model, z, predicted, innovation, deviation);
     const T inverse = T(1) / total;
     for (int i = 0; i < n; ++i) add_scaled<R>(P[i], -PH[i] * inverse, PH);
     add_scaled<R>(step, e * inverse, PH);

@@ -11,20 +11,40 @@ namespace alula {
 // Unknowns shared by all sensors. A scale error e makes the sensor read (1 + e) times the truth,
 // plus its bias.
 enum PathUnknown {
-  kBiasAx, kBiasAy, kBiasAz, kBiasP, kBiasQ, kBiasR,
-  kScaleAx, kScaleAy, kScaleAz, kScaleP, kScaleQ, kScaleR,
-  kWindNorth, kWindEast, kWindDown,
+  kBiasAx,
+  kBiasAy,
+  kBiasAz,
+  kBiasP,
+  kBiasQ,
+  kBiasR,
+  kScaleAx,
+  kScaleAy,
+  kScaleAz,
+  kScaleP,
+  kScaleQ,
+  kScaleR,
+  kWindNorth,
+  kWindEast,
+  kWindDown,
   kPathUnknowns
 };
 
 enum class Quantity : int {
-  height, phi, theta, psi, airspeed,
+  height,
+  phi,
+  theta,
+  psi,
+  airspeed,
   alpha,         // vane: atan(w/u) of the local air velocity
   alpha_linear,  // upwash on the angle at the inertial sensor, rotation added apart (v.d. Hoek (5))
   beta,          // asin(v/V) of the local air velocity
   beta_flank,    // vane on a vertical axis: atan(v/u)
   beta_linear,   // as alpha_linear, for asin(v/V)
-  velocity_north, velocity_east, velocity_down, north, east,
+  velocity_north,
+  velocity_east,
+  velocity_down,
+  north,
+  east,
 };
 
 // One sensor: reads reference + (1 + scale)(quantity - reference) + bias + noise. `position` is
@@ -42,18 +62,20 @@ struct PathSensor {
 
 template <class T>
 struct PathModel {
-  int states = kMotionStates;     // all: motion, then constants
-  int motion = kMotionStates;     // 7, or 9 with position
-  int dynamic = kMotionStates;    // the first so many enter the rates: motion, inertial errors
+  int states = kMotionStates;   // all: motion, then constants
+  int motion = kMotionStates;   // 7, or 9 with position
+  int dynamic = kMotionStates;  // the first so many enter the rates: motion, inertial errors
   T gravity = T(9.80665);
-  int slot[kPathUnknowns];        // state index or -1
-  T fixed[kPathUnknowns] = {};    // value where there is no slot
+  int slot[kPathUnknowns];      // state index or -1
+  T fixed[kPathUnknowns] = {};  // value where there is no slot
   bool wind = false;
   T input_sigma[kInertialInputs] = {};
-  T walk[kMaxStates] = {};        // random walk of the constants, unit per square root of a second
+  T walk[kMaxStates] = {};  // random walk of the constants, unit per square root of a second
   Bounded<PathSensor<T>, kMaxOutputs> sensors;
 
-  PathModel() { for (int& s : slot) s = -1; }
+  PathModel() {
+    for (int& s : slot) s = -1;
+  }
 };
 
 // The value of an unknown under state x.
@@ -134,7 +156,11 @@ inline S path_quantity(const PathSensor<T>& sensor, const S* y, const PathAir<S>
                         sensor.quantity == Quantity::velocity_east ||
                         sensor.quantity == Quantity::velocity_down;
   S bx = x, by = ry, bz = z;  // body components of the vector to rotate
-  if (velocity) { bx = y[kU] + du; by = y[kV] + dv; bz = y[kW] + dw; }
+  if (velocity) {
+    bx = y[kU] + du;
+    by = y[kV] + dv;
+    bz = y[kW] + dw;
+  }
   sincos(y[kPhi], sp, cp);
   sincos(y[kTheta], st, ct);
   const S side = by * sp + bz * cp;
@@ -150,8 +176,7 @@ inline S path_quantity(const PathSensor<T>& sensor, const S* y, const PathAir<S>
 
 // The reading of sensor i under the whole state x.
 template <class S, class T>
-inline S path_output(const PathSensor<T>& sensor, const S* x,
-                     const PathAir<S>& air) {
+inline S path_output(const PathSensor<T>& sensor, const S* x, const PathAir<S>& air) {
   S induced;
   const S true_value = path_quantity(sensor, x, air, induced);
   const S scale = sensor.scale_slot >= 0 ? x[sensor.scale_slot] : S(sensor.scale);
@@ -204,7 +229,8 @@ inline void path_outputs_jacobian(const PathModel<T>& model, const T* x, const T
     for (int j = 0; j < 3; ++j) {  // m = (measured - bias)/(1 + e): dm/dbias, dm/de
       const T gain = T(1) / (T(1) + unknown(model, x, kScaleP + j));
       if (model.slot[kBiasP + j] >= 0) h[model.slot[kBiasP + j]] = -gain * slope[6 + j];
-      if (model.slot[kScaleP + j] >= 0) h[model.slot[kScaleP + j]] = -gain * m[3 + j] * slope[6 + j];
+      if (model.slot[kScaleP + j] >= 0)
+        h[model.slot[kScaleP + j]] = -gain * m[3 + j] * slope[6 + j];
       if (model.slot[kWindNorth + j] >= 0) h[model.slot[kWindNorth + j]] = slope[9 + j];
     }
     if (sensor.scale_slot >= 0) h[sensor.scale_slot] = change;
@@ -227,7 +253,8 @@ inline void path_step_jacobian(const PathModel<T>& model, T* x, const T* u0, con
   for (int k = 0; k < kInertialInputs; ++k) {
     const T gain = T(1) / (T(1) + unknown(model, x, kScaleAx + k));
     const int bias = model.slot[kBiasAx + k], scale = model.slot[kScaleAx + k];
-    // The two ends carry different readings; their mean is exact to the order of RK4's own error.
+    // The two ends carry different readings; taking their mean leaves out (m1 - m0) dt^2 / 12
+    // times second derivatives, which sums to next to nothing over a record.
     const T middle = T(0.5) * (m0[k] + m1[k]);
     if (bias >= 0)
       for (int i = 0; i < N; ++i) F[i][bias] = -gain * B[i][k];

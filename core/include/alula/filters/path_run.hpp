@@ -11,8 +11,8 @@ namespace alula {
 template <class T>
 struct PathRecord {
   int samples = 0;
-  const T* t = nullptr;       // (samples) s
-  const T* inputs = nullptr;  // (samples, 6) specific force, rates
+  const T* t = nullptr;         // (samples) s
+  const T* inputs = nullptr;    // (samples, 6) specific force, rates
   const T* readings = nullptr;  // (samples, sensors), NaN where there is none
   const int* start = nullptr;   // (samples) row of `initial`, or -1
   const T* initial = nullptr;   // (maneuvers, 2 * motion) values, then standard deviations
@@ -67,7 +67,8 @@ int run_filter(Filter& filter, const PathModel<T>& model, const PathRecord<T>& r
     if (filter.update(model, u, record.readings + k * ny, innovation, deviation) < 0) return k;
     if (history.x)
       for (int i = 0; i < n; ++i) history.x[k * n + i] = filter.x[i];
-    if (history.covariance) pack<Filter::kRow>(filter.P, n, history.covariance + k * (n * (n + 1) / 2));
+    if (history.covariance)
+      pack<Filter::kRow>(filter.P, n, history.covariance + k * (n * (n + 1) / 2));
     T nis = T(0);
     for (int s = 0; s < ny; ++s) {
       if (history.innovation) history.innovation[k * ny + s] = innovation[s];
@@ -132,13 +133,14 @@ int run_smoother(Filter& filter, const PathModel<T>& model, const PathRecord<T>&
 
 // Open loop: the kinematics integrated from state x0 (states) with constants as they are, no
 // measurement used. `held` (samples, motion) may give motion states that are taken as measured
-// instead of integrated; NaN where a state is free, null where all are. Writes motion (samples, motion), readings (samples, sensors) and, where the
-// pointers are set, their exact Jacobians with respect to x0: motion_jacobian (samples, motion,
-// states) and readings_jacobian (samples, sensors, states). This is the model of the
-// maximum-likelihood form, and its sensitivities. Dittrich 2016, Eq. (3.62), variational.
+// instead of integrated; NaN where a state is free, null where all are. Writes motion (samples,
+// motion), readings (samples, sensors) and, where the pointers are set, their exact Jacobians with
+// respect to x0: motion_jacobian (samples, motion, states) and readings_jacobian (samples, sensors,
+// states). This is the model of the maximum-likelihood form, and its sensitivities. Dittrich 2016,
+// Eq. (3.62), variational.
 template <class T>
-void run_open_loop(const PathModel<T>& model, const T* t, const T* inputs, int samples,
-                   const T* x0, const T* held, T* motion, T* readings, T* motion_jacobian,
+void run_open_loop(const PathModel<T>& model, const T* t, const T* inputs, int samples, const T* x0,
+                   const T* held, T* motion, T* readings, T* motion_jacobian,
                    T* readings_jacobian) {
   const int n = model.states, ny = model.sensors.size(), nm = model.motion;
   constexpr int R = kMaxStates;

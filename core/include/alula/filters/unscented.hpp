@@ -53,14 +53,14 @@ class Unscented {
   // the minus side; the slots from n on repeat the mean. X_: motion states, Y_: readings.
   alignas(64) T X_[kMotionStatesWithPosition][2 * R];
   alignas(64) T Y_[kMaxOutputs][2 * R];
-  alignas(64) T U_[R][R];            // U'U = P before the last prediction or update
-  alignas(64) T spread_[R][R] = {};  // sqrt(n) times the lower factor, row by row
+  alignas(64) T U_[R][R];                          // U'U = P before the last prediction or update
+  alignas(64) T spread_[R][R] = {};                // sqrt(n) times the lower factor, row by row
   alignas(64) T D_[kMotionStatesWithPosition][R];  // weighted differences of opposite points
   alignas(64) T C_[kMaxOutputs][R];
   alignas(64) T DY_[kMaxOutputs][R];  // as D_, of the readings
 
-  int update_carefully(const PathModel<T>& model, const int* present, int ny, const T* middle,
-                       T* e, T* innovation, T* deviation);
+  int update_carefully(const PathModel<T>& model, const int* present, int ny, const T* middle, T* e,
+                       T* innovation, T* deviation);
 
   // A standard deviation that means 'unknown' is taken as `most`, correlations kept: points
   // farther out leave the range where the equations of motion, stepped, mean anything.
@@ -121,7 +121,8 @@ class Unscented {
   // out[j] for j in [from, count): covariance of rows `from` and j of deviations. The sums run
   // over all slots; those that repeat the mean are more than the mean's weight of 2 by a known
   // number. `middle` is the deviation of the mean point.
-  static void products(const T (*rows)[2 * R], int from, int count, int n, const T* middle, T* out) {
+  static void products(const T (*rows)[2 * R], int from, int count, int n, const T* middle,
+                       T* out) {
     const T wi = T(0.5) / T(n), mean_weight = T(2) - wi * T(2 * (R - n));
     const int last = count - 1;
     for (int j = from; j < count; j += 4) {

@@ -29,12 +29,16 @@ struct Dual {
   }
 
   T slope_of(int direction) const {
-    if constexpr (kWidth == 1) return slope[direction];
-    else return slope[direction / kWidth][direction % kWidth];
+    if constexpr (kWidth == 1)
+      return slope[direction];
+    else
+      return slope[direction / kWidth][direction % kWidth];
   }
   void set_slope(int direction, T s) {
-    if constexpr (kWidth == 1) slope[direction] = s;
-    else slope[direction / kWidth].set(direction % kWidth, s);
+    if constexpr (kWidth == 1)
+      slope[direction] = s;
+    else
+      slope[direction / kWidth].set(direction % kWidth, s);
   }
 
   // f(a) by the chain rule: its value and derivative at a.value.
@@ -78,9 +82,18 @@ struct Dual {
   }
 
   // With plain numbers, which have no slopes.
-  friend Dual operator+(Dual a, T b) { a.value += b; return a; }
-  friend Dual operator+(T a, Dual b) { b.value += a; return b; }
-  friend Dual operator-(Dual a, T b) { a.value -= b; return a; }
+  friend Dual operator+(Dual a, T b) {
+    a.value += b;
+    return a;
+  }
+  friend Dual operator+(T a, Dual b) {
+    b.value += a;
+    return b;
+  }
+  friend Dual operator-(Dual a, T b) {
+    a.value -= b;
+    return a;
+  }
   friend Dual operator-(T a, const Dual& b) { return b.chain(a - b.value, T(-1)); }
   friend Dual operator*(const Dual& a, T b) { return a.chain(a.value * b, b); }
   friend Dual operator*(T a, const Dual& b) { return b.chain(a * b.value, a); }
@@ -119,14 +132,24 @@ struct Dual {
 };
 
 template <class T>
-constexpr T value_of(const T& x) { return x; }
+constexpr T value_of(const T& x) {
+  return x;
+}
 template <class T, int N>
-constexpr T value_of(const Dual<T, N>& x) { return x.value; }
+constexpr T value_of(const Dual<T, N>& x) {
+  return x.value;
+}
 
 // Plain numbers answer to the same names as duals and lanes.
 using std::atan2;
 using std::sqrt;
-inline void sincos(double x, double& s, double& c) { s = std::sin(x); c = std::cos(x); }
-inline void sincos(float x, float& s, float& c) { s = std::sin(x); c = std::cos(x); }
+inline void sincos(double x, double& s, double& c) {
+  s = std::sin(x);
+  c = std::cos(x);
+}
+inline void sincos(float x, float& s, float& c) {
+  s = std::sin(x);
+  c = std::cos(x);
+}
 
 }  // namespace alula

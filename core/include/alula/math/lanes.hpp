@@ -14,10 +14,20 @@ inline constexpr int kLanes = 2;
 
 #if defined(__GNUC__)
 namespace detail {
-template <class T> struct IntegerOf;
-template <> struct IntegerOf<double> { using type = std::int64_t; };
-template <> struct IntegerOf<float> { using type = std::int32_t; };
-template <class T, int Bytes> struct VectorOf { using type [[gnu::vector_size(Bytes)]] = T; };
+template <class T>
+struct IntegerOf;
+template <>
+struct IntegerOf<double> {
+  using type = std::int64_t;
+};
+template <>
+struct IntegerOf<float> {
+  using type = std::int32_t;
+};
+template <class T, int Bytes>
+struct VectorOf {
+  using type [[gnu::vector_size(Bytes)]] = T;
+};
 }  // namespace detail
 
 template <class T, int W>
@@ -34,12 +44,25 @@ struct Lanes {
   T operator[](int i) const { return v[i]; }
   void set(int i, T x) { v[i] = x; }
 
-  static Lanes load(const T* p) { Lanes r; __builtin_memcpy(&r.v, p, sizeof r.v); return r; }
+  static Lanes load(const T* p) {
+    Lanes r;
+    __builtin_memcpy(&r.v, p, sizeof r.v);
+    return r;
+  }
   void store(T* p) const { __builtin_memcpy(p, &v, sizeof v); }
 
-  Lanes& operator+=(Lanes b) { v += b.v; return *this; }
-  Lanes& operator-=(Lanes b) { v -= b.v; return *this; }
-  Lanes& operator*=(Lanes b) { v *= b.v; return *this; }
+  Lanes& operator+=(Lanes b) {
+    v += b.v;
+    return *this;
+  }
+  Lanes& operator-=(Lanes b) {
+    v -= b.v;
+    return *this;
+  }
+  Lanes& operator*=(Lanes b) {
+    v *= b.v;
+    return *this;
+  }
   friend Lanes operator+(Lanes a, Lanes b) { return a.v + b.v; }
   friend Lanes operator-(Lanes a, Lanes b) { return a.v - b.v; }
   friend Lanes operator*(Lanes a, Lanes b) { return a.v * b.v; }
@@ -71,25 +94,39 @@ struct Lanes {
   using Integer = std::int64_t;
   struct Mask {
     Integer m[W];
-    friend Mask operator&(Mask a, Integer b) { for (auto& x : a.m) x &= b; return a; }
-    friend Mask operator^(Mask a, Mask b) { for (int i = 0; i < W; ++i) a.m[i] ^= b.m[i]; return a; }
+    friend Mask operator&(Mask a, Integer b) {
+      for (auto& x : a.m) x &= b;
+      return a;
+    }
+    friend Mask operator^(Mask a, Mask b) {
+      for (int i = 0; i < W; ++i) a.m[i] ^= b.m[i];
+      return a;
+    }
   };
   T v[W];
 
   Lanes() = default;
-  Lanes(T x) { for (auto& y : v) y = x; }
+  Lanes(T x) {
+    for (auto& y : v) y = x;
+  }
   T operator[](int i) const { return v[i]; }
   void set(int i, T x) { v[i] = x; }
-  static Lanes load(const T* p) { Lanes r; for (int i = 0; i < W; ++i) r.v[i] = p[i]; return r; }
-  void store(T* p) const { for (int i = 0; i < W; ++i) p[i] = v[i]; }
+  static Lanes load(const T* p) {
+    Lanes r;
+    for (int i = 0; i < W; ++i) r.v[i] = p[i];
+    return r;
+  }
+  void store(T* p) const {
+    for (int i = 0; i < W; ++i) p[i] = v[i];
+  }
   Lanes& operator+=(const Lanes& b) { return *this = *this + b; }
   Lanes& operator-=(const Lanes& b) { return *this = *this - b; }
   Lanes& operator*=(const Lanes& b) { return *this = *this * b; }
-#define ALULA_LANES_OPERATOR(op)                                     \
-  friend Lanes operator op(const Lanes& a, const Lanes& b) {         \
-    Lanes r;                                                         \
-    for (int i = 0; i < W; ++i) r.v[i] = a.v[i] op b.v[i];           \
-    return r;                                                        \
+#define ALULA_LANES_OPERATOR(op)                             \
+  friend Lanes operator op(const Lanes& a, const Lanes& b) { \
+    Lanes r;                                                 \
+    for (int i = 0; i < W; ++i) r.v[i] = a.v[i] op b.v[i];   \
+    return r;                                                \
   }
   ALULA_LANES_OPERATOR(+)
   ALULA_LANES_OPERATOR(-)
@@ -102,7 +139,11 @@ struct Lanes {
     for (int i = 0; i < W; ++i) r.v[i] = std::sqrt(a.v[i]);
     return r;
   }
-  friend T sum(const Lanes& a) { T s = 0; for (T x : a.v) s += x; return s; }
+  friend T sum(const Lanes& a) {
+    T s = 0;
+    for (T x : a.v) s += x;
+    return s;
+  }
 };
 #endif
 
@@ -110,15 +151,18 @@ namespace detail {
 // What sine and cosine need to know of a number type: adding and subtracting `magic` rounds to an
 // integer that then stands in the low bits; pi/2 in three parts whose products with small
 // integers are exact (Cody and Waite 1980).
-template <class T> struct Trig;
-template <> struct Trig<double> {
+template <class T>
+struct Trig;
+template <>
+struct Trig<double> {
   static constexpr double magic = 6755399441055744.0;  // 1.5 * 2^52
   static constexpr double half_pi_1 = 1.57079625129699707031;
   static constexpr double half_pi_2 = 7.54978941586159635335e-8;
   static constexpr double half_pi_3 = 5.39030252995776476554e-15;
   static constexpr int sign_shift = 62;  // from bit 1 to the sign bit
 };
-template <> struct Trig<float> {
+template <>
+struct Trig<float> {
   static constexpr float magic = 12582912.0f;  // 1.5 * 2^23
   static constexpr float half_pi_1 = 1.5703125f;
   static constexpr float half_pi_2 = 4.837512969970703125e-4f;

@@ -26,12 +26,12 @@ template <class T>
 struct AircraftModel {
   MassProperties<T> body;
   T S{1}, b{1}, c{1};
-  Vec3<T> reference_point{};       // where the moment coefficients act
-  Vec3<T> thrust_point{};          // a point of the thrust's line of action
+  Vec3<T> reference_point{};          // where the moment coefficients act
+  Vec3<T> thrust_point{};             // a point of the thrust's line of action
   Vec3<T> thrust_direction{1, 0, 0};  // unit vector
-  Vec3<T> wind{};                  // NED, the way it blows to
+  Vec3<T> wind{};                     // NED, the way it blows to
   T gravity{T(kStandardGravity)};
-  bool stability_axes = false;     // coefficients are CD CY CL instead of CX CY CZ
+  bool stability_axes = false;  // coefficients are CD CY CL instead of CX CY CZ
   TermTable table{};
   std::array<T, kMaxTerms> values{};
 };
@@ -113,8 +113,8 @@ void state_rate(const BodyState<S>& x, const Loads<S>& load, const AircraftModel
   const Vec3<S> position = transposed_times(R_BE, v);
   const Quaternion<S> turn =
       attitude_rate(Quaternion<S>{x[3], x[4], x[5], x[6]}, w, S(1));  // pull 1/s: slow and stable
-  const Vec3<S> dv = velocity_rate((T(1) / a.body.mass) * load.force,
-                                   gravity_in_body(R_BE, S(a.gravity)), v, w);
+  const Vec3<S> dv =
+      velocity_rate((T(1) / a.body.mass) * load.force, gravity_in_body(R_BE, S(a.gravity)), v, w);
   const Vec3<S> dw = angular_acceleration(a.body, load.moment, w);
   rate = {position.x, position.y, position.z, turn.w, turn.x, turn.y, turn.z,
           dv.x,       dv.y,       dv.z,       dw.x,   dw.y,   dw.z};

@@ -13,9 +13,9 @@ struct Air {
 };
 
 namespace standard_atmosphere_1976 {
-inline constexpr double kGravity = 9.80665;                  // m/s2
-inline constexpr double kEarthRadius = 6356766.0;            // m, for the geopotential height
-inline constexpr double kGasConstant = 8314.32 / 28.9644;    // J/(kg K), R* over M0
+inline constexpr double kGravity = 9.80665;                // m/s2
+inline constexpr double kEarthRadius = 6356766.0;          // m, for the geopotential height
+inline constexpr double kGasConstant = 8314.32 / 28.9644;  // J/(kg K), R* over M0
 inline constexpr double kHeatRatio = 1.4;
 
 struct Layer {
@@ -58,11 +58,9 @@ Air<S> standard_atmosphere(const S& h) {
   const S above = height - S(layer.base);
   Air<S> air;
   air.temperature = S(layer.temperature) + S(layer.lapse) * above;
-  const S exponent =
-      layer.lapse == 0.0
-          ? S(-kGravity / (kGasConstant * layer.temperature)) * above
-          : S(-kGravity / (kGasConstant * layer.lapse)) *
-                log(air.temperature * S(1.0 / layer.temperature));
+  const S exponent = layer.lapse == 0.0 ? S(-kGravity / (kGasConstant * layer.temperature)) * above
+                                        : S(-kGravity / (kGasConstant * layer.lapse)) *
+                                              log(air.temperature * S(1.0 / layer.temperature));
   air.pressure = S(layer.pressure) * exp(exponent);
   air.density = air.pressure / (S(kGasConstant) * air.temperature);
   air.speed_of_sound = sqrt(S(kHeatRatio * kGasConstant) * air.temperature);

@@ -47,11 +47,20 @@ inline void point_step(S* y, const S* m0, const S* m1, T gravity, T dt) {
   for (int i = 0; i < kInertialInputs; ++i) mid[i] = S(T(0.5)) * (m0[i] + m1[i]);
   const S half(T(0.5) * dt), full(dt), two(T(2)), sixth(dt / T(6));
   point_derivative<N>(y, m0, gravity, k);
-  for (int i = 0; i < N; ++i) { total[i] = k[i]; x[i] = y[i] + half * k[i]; }
+  for (int i = 0; i < N; ++i) {
+    total[i] = k[i];
+    x[i] = y[i] + half * k[i];
+  }
   point_derivative<N>(x, mid, gravity, k);
-  for (int i = 0; i < N; ++i) { total[i] += two * k[i]; x[i] = y[i] + half * k[i]; }
+  for (int i = 0; i < N; ++i) {
+    total[i] += two * k[i];
+    x[i] = y[i] + half * k[i];
+  }
   point_derivative<N>(x, mid, gravity, k);
-  for (int i = 0; i < N; ++i) { total[i] += two * k[i]; x[i] = y[i] + full * k[i]; }
+  for (int i = 0; i < N; ++i) {
+    total[i] += two * k[i];
+    x[i] = y[i] + full * k[i];
+  }
   point_derivative<N>(x, m1, gravity, k);
   for (int i = 0; i < N; ++i) y[i] = y[i] + sixth * (total[i] + k[i]);
 }
@@ -90,12 +99,18 @@ inline void point_input_gain(const T* y, T (*G)[kInertialInputs]) {
   for (int i = 0; i < kMotionStates; ++i)
     for (int j = 0; j < kInertialInputs; ++j) G[i][j] = T(0);
   G[kU][0] = G[kV][1] = G[kW][2] = G[kPhi][3] = T(1);
-  G[kU][4] = -w; G[kU][5] = v;
-  G[kV][3] = w;  G[kV][5] = -u;
-  G[kW][3] = -v; G[kW][4] = u;
-  G[kPhi][4] = sp * tt; G[kPhi][5] = cp * tt;
-  G[kTheta][4] = cp;    G[kTheta][5] = -sp;
-  G[kPsi][4] = sp / ct; G[kPsi][5] = cp / ct;
+  G[kU][4] = -w;
+  G[kU][5] = v;
+  G[kV][3] = w;
+  G[kV][5] = -u;
+  G[kW][3] = -v;
+  G[kW][4] = u;
+  G[kPhi][4] = sp * tt;
+  G[kPhi][5] = cp * tt;
+  G[kTheta][4] = cp;
+  G[kTheta][5] = -sp;
+  G[kPsi][4] = sp / ct;
+  G[kPsi][5] = cp / ct;
 }
 
 }  // namespace alula
