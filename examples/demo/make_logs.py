@@ -100,8 +100,8 @@ def maneuvers() -> dict[str, tuple[Maneuver, dict[str, Signal]]]:
     )
     rudder = Sum(
         (
-            doublet(5.0 * DEG, start=10.0, width=1.0, ramp=0.1),
-            doublet(-5.0 * DEG, start=16.0, width=0.7, ramp=0.1),
+            doublet(4.5 * DEG, start=10.0, width=1.0, ramp=0.1),
+            doublet(-4.5 * DEG, start=16.0, width=0.7, ramp=0.1),
         )
     )
     return {
