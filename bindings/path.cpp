@@ -1,6 +1,7 @@
 // Flight path reconstruction: the model as a table, the filters and the open-loop integration.
 #include "bind.hpp"
 
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -40,7 +41,7 @@ void add_sensor(Model& model, int quantity, const std::vector<double>& position,
 }
 
 template <class Filter>
-nb::dict run(const Model& model, Vector t, Matrix inputs, Matrix readings,
+nb::dict run_rows(const Model& model, Vector t, Matrix inputs, Matrix readings,
              nb::ndarray<const int, nb::ndim<1>, nb::c_contig> start, Matrix initial, Vector x0,
              Vector sigma0, bool smooth, bool keep_covariance) {
   const int samples = static_cast<int>(t.shape(0)), n = model.states, ny = model.sensors.size();
@@ -94,19 +95,50 @@ nb::dict run(const Model& model, Vector t, Matrix inputs, Matrix readings,
   return out;
 }
 
-nb::dict open_loop(const Model& model, Vector t, Matrix inputs, Vector x0, bool jacobian) {
+// The filter with the shorter of the two row lengths that hold the states.
+template <template <class, int> class Filter>
+nb::dict run(const Model& model, Vector t, Matrix inputs, Matrix readings,
+             nb::ndarray<const int, nb::ndim<1>, nb::c_contig> start, Matrix initial, Vector x0,
+             Vector sigma0, bool smooth, bool keep_covariance) {
+  const auto chosen = model.states < kShortRow ? &run_rows<Filter<double, kShortRow>>
+                                               : &run_rows<Filter<double, kLongRow>>;
+  return chosen(model, t, inputs, readings, start, initial, x0, sigma0, smooth, keep_covariance);
+}
+
+nb::ndarray<nb::numpy, double> readings_of(const Model& model, Matrix inputs, Matrix x) {
+  const int samples = static_cast<int>(x.shape(0)), ny = model.sensors.size();
+  row_of("inputs", inputs.shape(1), kInertialInputs);
+  row_of("x", x.shape(1), model.states);
+  if (inputs.shape(0) != x.shape(0)) throw std::invalid_argument("inputs: expected one row a state");
+  Array<double> out({samples, ny});
+  for (int k = 0; k < samples; ++k) {
+    const double* state = x.data() + k * model.states;
+    double m[kInertialInputs], wind[3];
+    true_inputs(model, state, inputs.data() + k * kInertialInputs, m);
+    for (int i = 0; i < 3; ++i) wind[i] = unknown(model, state, kWindNorth + i);
+    const PathAir<double> air = path_air(model, state, wind, m);
+    for (int s = 0; s < ny; ++s)
+      out.data()[k * ny + s] = path_output(model.sensors[s], state, air);
+  }
+  return out.numpy();
+}
+
+nb::dict open_loop(const Model& model, Vector t, Matrix inputs, Vector x0,
+                   std::optional<Matrix> held, bool jacobian) {
   const int samples = static_cast<int>(t.shape(0)), n = model.states, ny = model.sensors.size();
   row_of("inputs", inputs.shape(1), kInertialInputs);
   row_of("x0", x0.shape(0), n);
   if (inputs.shape(0) != t.shape(0))
     throw std::invalid_argument("inputs: expected one row a sample");
+  if (held && (held->shape(0) != t.shape(0) || row_of("held", held->shape(1), model.motion) == 0))
+    throw std::invalid_argument("held: expected one row a sample");
   const int rows = jacobian ? samples : 0;
   Array<double> motion({samples, model.motion}), readings({samples, ny}),
       motion_jacobian({rows, model.motion, n}), readings_jacobian({rows, ny, n});
   {
     nb::gil_scoped_release release;
-    run_open_loop(model, t.data(), inputs.data(), samples, x0.data(), motion.data(),
-                  readings.data(), jacobian ? motion_jacobian.data() : nullptr,
+    run_open_loop(model, t.data(), inputs.data(), samples, x0.data(),
+                  held ? held->data() : nullptr, motion.data(), readings.data(), jacobian ? motion_jacobian.data() : nullptr,
                   jacobian ? readings_jacobian.data() : nullptr);
   }
   nb::dict out;
@@ -152,13 +184,15 @@ void bind_path(nb::module_& m) {
       "the row of `initial` where a maneuver begins and -1 elsewhere, initial (maneuvers, 2 motion)\n"
       "values and standard deviations, x0 and sigma0 (states,) the constants' prior. Returns\n"
       "histories; `done` < n where the filter lost its covariance.";
-  m.def("path_ekf", &run<Extended<double>>, nb::arg("model"), nb::arg("t"), nb::arg("inputs"),
+  m.def("path_ekf", &run<Extended>, nb::arg("model"), nb::arg("t"), nb::arg("inputs"),
         nb::arg("readings"), nb::arg("start"), nb::arg("initial"), nb::arg("x0"),
         nb::arg("sigma0"), nb::arg("smooth") = false, nb::arg("keep_covariance") = false, doc);
-  m.def("path_ukf", &run<Unscented<double>>, nb::arg("model"), nb::arg("t"), nb::arg("inputs"),
+  m.def("path_ukf", &run<Unscented>, nb::arg("model"), nb::arg("t"), nb::arg("inputs"),
         nb::arg("readings"), nb::arg("start"), nb::arg("initial"), nb::arg("x0"),
         nb::arg("sigma0"), nb::arg("smooth") = false, nb::arg("keep_covariance") = false, doc);
+  m.def("path_readings", &readings_of, nb::arg("model"), nb::arg("inputs"), nb::arg("x"),
+        "What the sensors read (n, sensors) under measured inputs (n, 6) and states x (n, states).");
   m.def("path_open_loop", &open_loop, nb::arg("model"), nb::arg("t"), nb::arg("inputs"),
-        nb::arg("x0"), nb::arg("jacobian") = true,
+        nb::arg("x0"), nb::arg("held") = nb::none(), nb::arg("jacobian") = true,
         "Integrate the kinematics from x0 without using a measurement, with exact Jacobians.");
 }

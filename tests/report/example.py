@@ -13,6 +13,7 @@ from alula.base.arrays import Array, frozen
 from alula.base.messages import note, warn
 from alula.flight import Maneuver, Motion, SourceFile
 from alula.identify.result import Fit, Identification, Parameter, Series, Tie
+from alula.logs.card import ChannelCard, LogCard, ManeuverCard
 from alula.reconstruct.result import Constant, Reconstruction, Segment, SensorFit
 from alula.report import ReportInput
 
@@ -169,22 +170,28 @@ def identification(rec: Reconstruction, truth: bool) -> Identification:
                           "maneuver in which pitch rate and angle of attack differ.")  # fmt: skip
 
 
-def card(m: Maneuver, rate: float) -> dict[str, Any]:
-    def channel(name: str, unit: str, low: float, high: float) -> dict[str, Any]:
-        return {
-            "name": name, "unit": unit, "rate": rate, "n": round(25 * rate) + 1, "start": m.start,
-            "end": m.end, "gaps": 1 if name == "v_north" else 0, "nan": 3 if name == "h" else 0,
-            "min": low, "median": (low + high) / 2, "max": high,
-            "source": f"column '{name.upper()}', converted to {unit}",
-        }  # fmt: skip
+def card(m: Maneuver, rate: float, digit: int) -> LogCard:
+    """The card of a log that holds one maneuver."""
 
-    channels = [channel("ax", "m/s2", -0.4, 1.9), channel("az", "m/s2", -14.1, -3.2),
-                channel("q", "rad/s", -0.08, 0.09), channel("alpha", "rad", 0.01, 0.11),
-                channel("V", "m/s", 96.2, 104.1), channel("h", "m", 4788.0, 4826.0),
-                channel("v_north", "m/s", -4.0, 4.0), channel("de", "rad", -0.05, 0.02)]  # fmt: skip
+    def channel(name: str, unit: str, low: float, high: float) -> ChannelCard:
+        return ChannelCard(
+            name, unit, f"column '{name.upper()}', converted to {unit}", round(25 * rate) + 1,
+            3 if name == "h" else 0, rate, m.start, m.end,
+            ((m.start + 8.0, m.start + 9.2),) if name == "v_north" else (),
+            low, (low + high) / 2, high, np.nan if name == "V" else (high - low) / 200,
+        )  # fmt: skip
+
+    channels = (
+        channel("ax", "m/s2", -0.4, 1.9), channel("az", "m/s2", -14.1, -3.2),
+        channel("q", "rad/s", -0.08, 0.09), channel("alpha", "rad", 0.01, 0.11),
+        channel("V", "m/s", 96.2, 104.1), channel("h", "m", 4788.0, 4826.0),
+        channel("v_north", "m/s", -4.0, 4.0), channel("de", "rad", -0.05, 0.02),
+    )  # fmt: skip
     entry = {"V": 102.1, "alpha": 0.0611, "h": 4800.0}
-    return {"id": m.log, "channels": channels,
-            "maneuvers": [{"id": m.id, "n": round(25 * rate) + 1, "entry": entry}]}  # fmt: skip
+    file = SourceFile(f"{m.log}.mat", f"{digit:x}" * 64, 381_204, 358_000, 23_204, 0)
+    maneuver = ManeuverCard(m.id, m.log, m.kind, m.aspect, m.held_out, m.configuration, m.start,
+                            m.end, round(25 * rate) + 1, (), entry)  # fmt: skip
+    return LogCard(m.log, (file,), channels, (maneuver,), ())
 
 
 def example(rate: float = 25.0, *, truth: bool = False, **changes: Any) -> ReportInput:
@@ -196,9 +203,7 @@ def example(rate: float = 25.0, *, truth: bool = False, **changes: Any) -> Repor
         "date": "2024-05-17",
         "aircraft": {"Aircraft": "Example jet", "Wing area": "64.0 m²", "Span": "21.5 m",
                      "Mean chord": "3.16 m", "Mass": "17 400 kg (assumed)", "Ixx": "215 000 kg m²"},
-        "files": tuple(SourceFile(f"{m.log}.mat", f"{k:x}" * 64, 381_204, 358_000, 23_204, 0)
-                       for k, m in enumerate(MANEUVERS, 10)),
-        "cards": tuple(card(m, rate) for m in MANEUVERS),
+        "cards": tuple(card(m, rate, k) for k, m in enumerate(MANEUVERS, 10)),
         "maneuvers": MANEUVERS,
         "reconstruction": rec,
         "identification": identification(rec, truth),

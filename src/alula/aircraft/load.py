@@ -191,6 +191,7 @@ def _direction(table: EngineTable, turn: Array) -> Array:
     """The thrust's unit vector in body axes; angles are from the nose, whatever the frame."""
     if table.direction is not None:
         along = turn @ np.array(table.direction)
+        along /= np.abs(along).max()  # before the squares, which may underflow
         return frozen(along / np.linalg.norm(along))
     up, right = np.radians(table.tilt_deg or 0.0), np.radians(table.toe_deg or 0.0)
     return frozen([np.cos(up) * np.cos(right), np.cos(up) * np.sin(right), -np.sin(up)])

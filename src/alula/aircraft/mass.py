@@ -144,7 +144,8 @@ def check_inertia(inertia: Array, where: str) -> tuple[Message, ...]:
 
 def _check_fuel(used: Array, on_board: float) -> None:
     slack = COUNTER_SLACK * on_board
-    low, high = float(np.nanmin(used, initial=0.0)), float(np.nanmax(used, initial=0.0))
+    known = used[~np.isnan(used)]
+    low, high = float(known.min(initial=0.0)), float(known.max(initial=0.0))
     if low < -slack or high > on_board + slack:
         raise refuse(
             "fuel_used_range",

@@ -6,8 +6,9 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
-Number = Annotated[float, Field(allow_inf_nan=False)]
+HUGE = 1e12  # beyond any aircraft in SI, and far from where squares overflow
+Positive = Annotated[float, Field(gt=0.0, le=HUGE, allow_inf_nan=False)]
+Number = Annotated[float, Field(ge=-HUGE, le=HUGE, allow_inf_nan=False)]
 Vector = Annotated[list[Number], Field(min_length=3, max_length=3)]
 Range = Annotated[list[Number], Field(min_length=2, max_length=2)]
 

@@ -186,6 +186,9 @@ class ReconstructSpec(Strict):
     gravity: float = Field(default=9.80665, gt=0)
     share: Literal["all", "log", "maneuver"] = "all"
     initial_state: Literal["estimate", "measured"] = "estimate"
+    given: list[Literal["h", "u", "v", "w", "phi", "theta", "psi"]] = Field(
+        default=[], description="motion states taken as measured, not integrated (filter 'ml')"
+    )
     smoothing_window_s: float = Field(default=0.0, ge=0, description="0: the method chooses")
     imu: dict[Literal["ax", "ay", "az", "p", "q", "r"], NoiseSpec] = {}
     unknowns: dict[str, UnknownSpec] = {}

@@ -34,7 +34,7 @@ def read_toml(path: Path) -> tuple[str, dict[str, Any], str]:
     try:
         text = data.decode("utf-8-sig")
         tree = tomllib.loads(text)
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:  # not UTF-8, not TOML, endless numbers
         raise refuse(
             "not_toml",
             where=str(path),
@@ -61,7 +61,7 @@ def expand(text: str, file: Path, key: str) -> str:
         return os.environ[name]
 
     expanded = Path(re.sub(r"\$\{(\w+)\}", value, text)).expanduser()
-    return str((file.parent / expanded).absolute())
+    return os.path.abspath(file.parent / expanded)
 
 
 def explain(error: ValidationError, path: Path, text: str = "") -> list[Message]:

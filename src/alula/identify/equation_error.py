@@ -34,11 +34,18 @@ def model_design(
     return regressors(coefficient, formula, variables)
 
 
+def model_scales(coefficient: str, formula: str) -> dict[str, float]:
+    """Standard errors that are good enough, where the formula states them (`beta~0.01`)."""
+    scales: Callable[[str, str], dict[str, float]] = importlib.import_module(
+        "alula.model"
+    ).reference_scales
+    return scales(coefficient, formula)
+
+
 def identify_equation_error(
     data: Sequence[CoefficientData],
     models: Mapping[str, str],
     *,
-    design: Design = model_design,
     weighting: Weighting = "residual",
     common_constant: bool = False,
     scales: Mapping[str, float] | None = None,
@@ -73,14 +80,15 @@ def identify_equation_error(
     for coefficient, formula in models.items():
         serving = _serving(data, coefficient)
         learn = [item for item in serving if not item.maneuver.held_out]
-        task = _Task(coefficient, formula, design, tuple(learn), common_constant)
+        task = _Task(coefficient, formula, tuple(learn), common_constant)
         fit = regress(task.names, task.blocks(None), weighting)
         change = {
             source: fit.refit(task.blocks(source)) - fit.solution.value
             for source in dict.fromkeys(p.source for item in learn for p in item.perturbed)
         }
         added = sum((np.outer(d, d) for d in change.values()), np.zeros((len(task.names),) * 2))
-        assessed, remarks = assess(coefficient, fit, added, scales or {}, truth or {})
+        enough = {**model_scales(coefficient, formula), **(scales or {})}
+        assessed, remarks = assess(coefficient, fit, added, enough, truth or {})
         parameters += assessed
         messages += remarks
         parts.append(fit.coloured.covariance)
@@ -107,17 +115,11 @@ class _Task:
         self,
         coefficient: str,
         formula: str,
-        design: Design,
         learn: tuple[CoefficientData, ...],
         common: bool,
     ) -> None:
-        self.coefficient, self.formula, self.design, self.learn = (
-            coefficient,
-            formula,
-            design,
-            learn,
-        )
-        terms, _ = design(coefficient, formula, learn[0].variables)
+        self.coefficient, self.formula, self.learn = coefficient, formula, learn
+        terms, _ = model_design(coefficient, formula, learn[0].variables)
         self.terms = tuple(terms)
         self.constant = constant_name(coefficient)
         self.split = self.constant in self.terms and len(learn) > 1 and not common
@@ -125,12 +127,11 @@ class _Task:
         own = tuple(f"{self.constant}[{d.maneuver.id}]" for d in learn) if self.split else ()
         self.names = (*own, *self.shared)
 
-    def terms_of(self, variables: Mapping[str, Array], n: int) -> Array:
+    def terms_of(self, variables: Mapping[str, Array]) -> Array:
         """The formula's regressors (n, k) in the order of `terms`."""
-        names, matrix = self.design(self.coefficient, self.formula, variables)
-        if tuple(names) != self.terms:
-            raise AssertionError("a formula must give the same terms for every maneuver")
-        return np.broadcast_to(matrix, (n, len(self.terms)))
+        names, matrix = model_design(self.coefficient, self.formula, variables)
+        assert tuple(names) == self.terms  # a formula's terms do not depend on the data
+        return matrix
 
     def blocks(self, source: str | None) -> list[Block]:
         """One block per maneuver, as it was or as `source` would have had it."""
@@ -141,7 +142,7 @@ class _Task:
                 if way.source == source:
                     coefficients, variables = way.coefficients, way.variables
             measured = coefficients[self.coefficient]
-            matrix = self.terms_of(variables, len(measured))
+            matrix = self.terms_of(variables)
             if self.split:
                 own = np.zeros((len(measured), len(self.learn)))
                 own[:, i] = 1.0
@@ -182,7 +183,7 @@ def _series(task: _Task, fit: Regression, serving: Sequence[CoefficientData]) ->
         measured = item.coefficients[task.coefficient]
         own = f"{task.constant}[{item.maneuver.id}]"
         used = [value.get(own, 0.0) if n not in value else value[n] for n in task.terms]
-        model = task.terms_of(item.variables, len(measured)) @ np.array(used)
+        model = task.terms_of(item.variables) @ np.array(used)
         if item.maneuver.held_out and task.constant in task.terms:
             model = model + np.mean(measured - model)
         out.append(

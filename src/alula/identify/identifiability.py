@@ -24,6 +24,7 @@ import numpy as np
 
 from alula.base.arrays import Array
 from alula.identify.regression import Regression
+from alula.identify.regressor_noise import rough_part
 from alula.identify.result import Tie
 
 Reason = Literal["collinear", "noise", "uncertain"]
@@ -35,8 +36,6 @@ WHITE_SHARE = 0.5
 UNCERTAIN = 10.0
 SIGNIFICANT = 3.0  # standard errors along a direction beyond which the data did respond
 SMALLEST_TIE = 0.01
-DIFFERENCE = 3  # third differences leave noise and take away motion ...
-GAIN = 20.0  # ... and raise the variance of white noise by 1 + 9 + 9 + 1
 
 
 @dataclass(frozen=True)
@@ -91,21 +90,20 @@ def variance_inflation(fit: Regression) -> Array:
 def _noise_directions(fit: Regression, covariance: Array, free: list[int]) -> tuple[Array, Array]:
     """Directions of scaled parameters along which the regressors are white; their scale.
 
-    Solves the symmetric eigenproblem noise * w = share * total * w with total whitened first.
+    Solves the symmetric eigenproblem noise * w = share * total * w with total whitened first. Small
+    members of a direction are chance, and would bring a large parameter's significance with them.
     """
     centered, rough = [], []
     for weight, block in zip(fit.weights, fit.blocks, strict=True):
         x = np.sqrt(weight) * block.regressors[:, free]
         centered.append(x - x.mean(axis=0))
-        if len(x) > 2 * DIFFERENCE:
-            lost = len(x) / (len(x) - DIFFERENCE)
-            rough.append(np.diff(x, n=DIFFERENCE, axis=0) * np.sqrt(lost / GAIN))
+        rough.append(rough_part(x))
     moving = np.vstack(centered)
     scale = np.linalg.norm(moving, axis=0)
     constant = scale <= 1e-10 * fit.solution.scale[free]
     scale[constant] = 1.0
     empty = np.zeros((len(free), 0)), scale
-    if constant.all() or not rough:
+    if constant.all():
         return empty
     singular, right = np.linalg.svd((moving / scale)[:, ~constant], full_matrices=False)[1:]
     kept = singular > 1e-12 * singular[0]
@@ -115,7 +113,7 @@ def _noise_directions(fit: Regression, covariance: Array, free: list[int]) -> tu
     directions = []
     for w in (whitened @ axes[share**2 > WHITE_SHARE].T).T:
         step = np.zeros(len(free))
-        step[~constant] = w
+        step[~constant] = np.where(np.abs(w) < MEMBER_NOISE * np.max(np.abs(w)), 0.0, w)
         if not _significant(step, fit.solution.value[free], covariance, free, scale):
             directions.append(step)
     return _orthonormal(directions, len(free)), scale

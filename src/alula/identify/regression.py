@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 
 from alula.base.arrays import Array
-from alula.identify.coloured import Coloured, coloured_covariance
+from alula.base.coloured import Coloured, coloured_covariance
 from alula.identify.least_squares import LeastSquares, least_squares
 
 Weighting = Literal["residual", "equal"]

@@ -20,6 +20,7 @@ from alula.base.arrays import Array
 from alula.base.messages import Message, warn
 from alula.identify.identifiability import Unresolved, unresolved, variance_inflation
 from alula.identify.regression import Regression
+from alula.identify.regressor_noise import warn_of_bias
 from alula.identify.result import Parameter, Verdict
 from alula.identify.typical import typical_magnitude, unit
 
@@ -52,9 +53,7 @@ def assess(
     that are good enough, by name. units: by name, where the names do not tell them.
     """
     covariance = fit.coloured.covariance + added
-    typical = [
-        scales.get(name, typical_magnitude(coefficient, name.split("[")[0])) for name in fit.names
-    ]
+    typical = [typical_magnitude(coefficient, name.split("[")[0]) for name in fit.names]
     lost = unresolved(fit, covariance, typical)
     inflation = variance_inflation(fit)
     white = np.sqrt(np.diag(fit.solution.covariance))
@@ -81,8 +80,10 @@ def assess(
                 truth=truth.get(name),
             )
         )
-    messages = tuple(_explain(coefficient, name, why, fit) for name, why in lost.items())
-    return tuple(parameters), messages
+    messages = [_explain(coefficient, name, why, fit) for name, why in lost.items()]
+    if not lost:  # of parameters that are not told, neither is the bias
+        messages += warn_of_bias(coefficient, fit, se)
+    return tuple(parameters), tuple(messages)
 
 
 def combination(name: str, why: Unresolved) -> str:

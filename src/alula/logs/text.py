@@ -188,8 +188,10 @@ def layout(text: Text, log: LogSpec, separator: str, decimal: str) -> Layout:
     before = [i for i in fields if i < first]
     unit_line = _chosen(log.unit_row)
     header_line = _chosen(log.header_row)
-    if log.unit_row is None and len(before) > 1 and _is_units(fields[before[-1]]):
-        unit_line = before.pop()
+    if log.unit_row is None and len(before) > 1:
+        above, last = (fields[i] for i in before[-2:])
+        if len(above) == len(last) and _is_units(last):
+            unit_line = before.pop()
     if log.header_row is None and log.columns is None:
         same = [i for i in before if len(fields[i]) in (width, width - 1)]
         header_line = same[-1] if same else _comment_header(text, first, separator, width)

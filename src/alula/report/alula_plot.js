@@ -3,118 +3,15 @@
    together. Samples are drawn by the lowest and highest of every pixel column, found through an
    index of blocks, so a million samples zoom without a wait. No dependency, no WebGL.
 
-   AlulaPlot.Times.uniform(start, step, n) | AlulaPlot.Times.of(Float64Array)
-   new AlulaPlot.Link()
+   AlulaSeries.Times.uniform(start, step, n) | AlulaSeries.Times.of(Float64Array)
+   new AlulaLink.Link()
    new AlulaPlot.Plot(host, {panels: [{label, small, lines: [{name, style, y}],
                                        bands: [{name, half, center}]}]}, times, link)
    `y`, `half` and `center` are Float32Arrays (center may be null); `host` holds a canvas. */
 const AlulaPlot = (() => {
-  const BLOCK = 64;
+  const { Samples, ticks, format, readable, superscript } = AlulaSeries;
   const LEFT = 54, RIGHT = 10, ROW = 16, FOOT = 34, GAP = 8;
   const FONT = "11px system-ui, -apple-system, 'Segoe UI', Roboto, 'DejaVu Sans', sans-serif";
-
-  /* One curve with the extremes of its blocks. */
-  class Samples {
-    constructor(values) {
-      this.v = values;
-      const n = Math.ceil(values.length / BLOCK);
-      this.low = new Float32Array(n).fill(NaN);
-      this.high = new Float32Array(n).fill(NaN);
-      for (let b = 0; b < n; b++) {
-        const e = this.scan(b * BLOCK, Math.min((b + 1) * BLOCK, values.length), [Infinity, -Infinity]);
-        if (e[0] <= e[1]) { this.low[b] = e[0]; this.high[b] = e[1]; }
-      }
-    }
-    scan(i, j, e) {
-      for (; i < j; i++) {
-        const y = this.v[i];
-        if (y < e[0]) e[0] = y;
-        if (y > e[1]) e[1] = y;
-      }
-      return e;
-    }
-    /* [lowest, highest] of samples i to j - 1; [Infinity, -Infinity] where all are missing. */
-    extremes(i, j) {
-      const e = [Infinity, -Infinity];
-      const first = Math.ceil(i / BLOCK), last = Math.floor(j / BLOCK);
-      if (first >= last) return this.scan(i, j, e);
-      this.scan(i, first * BLOCK, e);
-      for (let b = first; b < last; b++) {
-        if (this.low[b] < e[0]) e[0] = this.low[b];
-        if (this.high[b] > e[1]) e[1] = this.high[b];
-      }
-      return this.scan(last * BLOCK, j, e);
-    }
-  }
-
-  /* Times of samples, increasing. A step over three times the median is a gap: no line across. */
-  class Times {
-    static uniform(start, step, n) {
-      const t = new Times();
-      Object.assign(t, { start, step, n, array: null, gap: Infinity });
-      return t;
-    }
-    static of(array) {
-      const t = new Times(), n = array.length, steps = [];
-      const stride = Math.max(1, Math.floor(n / 1000));
-      for (let i = 1; i < n; i += stride) steps.push(array[i] - array[i - 1]);
-      steps.sort((a, b) => a - b);
-      const step = steps[steps.length >> 1] || 1;
-      Object.assign(t, { start: array[0], step, n, array, gap: 3 * step });
-      return t;
-    }
-    at(i) { return this.array ? this.array[i] : this.start + this.step * i; }
-    get end() { return this.at(this.n - 1); }
-    /* The first sample at or after time t. */
-    index(t) {
-      if (!this.array) {
-        return Math.min(this.n, Math.max(0, Math.ceil((t - this.start) / this.step - 1e-9)));
-      }
-      let i = 0, j = this.n;
-      while (i < j) {
-        const k = (i + j) >> 1;
-        if (this.array[k] < t) i = k + 1; else j = k;
-      }
-      return i;
-    }
-    nearest(t) {
-      const i = this.index(t);
-      if (i <= 0) return 0;
-      if (i >= this.n) return this.n - 1;
-      return t - this.at(i - 1) < this.at(i) - t ? i - 1 : i;
-    }
-  }
-
-  /* The time window and the cursor that several plots share. */
-  class Link {
-    constructor() {
-      Object.assign(this, { plots: [], start: Infinity, end: -Infinity, cursor: null, finest: 1e-6 });
-    }
-    add(plot) {
-      this.plots.push(plot);
-      this.start = this.low = Math.min(this.start, plot.times.start);
-      this.end = this.high = Math.max(this.end, plot.times.end);
-      this.finest = Math.max(1e-6, 4 * plot.times.step);
-    }
-    set(low, high) {
-      const full = this.end - this.start;
-      const width = Math.min(full, Math.max(Math.min(this.finest, full), high - low));
-      const middle = (low + high) / 2;
-      this.low = Math.min(Math.max(middle - width / 2, this.start), this.end - width);
-      this.high = this.low + width;
-      this.changed();
-    }
-    zoom(factor, at = (this.low + this.high) / 2) {
-      this.set(at - (at - this.low) * factor, at + (this.high - at) * factor);
-    }
-    pan(share) {
-      const by = share * (this.high - this.low);
-      this.set(this.low + by, this.high + by);
-    }
-    reset() { this.set(this.start, this.end); }
-    point(t) { this.cursor = t; this.changed(); }
-    changed() { for (const plot of this.plots) soon(plot); }
-  }
 
   /* Plots in view are drawn in the next frame, the others when there is time. */
   const waiting = new Set();
@@ -134,28 +31,6 @@ const AlulaPlot = (() => {
     if (asked) requestAnimationFrame(drawWaiting);
   }
 
-  /* About `count` round numbers from low to high. */
-  function ticks(low, high, count) {
-    const rough = (high - low) / Math.max(count, 1);
-    const ten = 10 ** Math.floor(Math.log10(rough));
-    const step = [1, 2, 5, 10].map((m) => m * ten).find((s) => s >= rough * 0.999) || ten;
-    const out = [];
-    for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k++) out.push(k * step);
-    return { step, values: out };
-  }
-  const minus = (text) => text.replace("-", "\u2212");
-  function format(value, step) {
-    const decimals = Math.min(9, Math.max(0, -Math.floor(Math.log10(step) + 1e-9)));
-    return minus((Math.abs(value) < step * 1e-6 ? 0 : value).toFixed(decimals));
-  }
-  function readable(value) {
-    if (!Number.isFinite(value)) return "\u2013";
-    const size = Math.abs(value);
-    return minus(size !== 0 && (size < 1e-3 || size >= 1e6) ? value.toExponential(3)
-      : String(Number(value.toPrecision(5))));
-  }
-  const superscript = (n) => [...String(n)].map((c) => "\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079"[c] || "\u207b").join("");
-
   class Plot {
     constructor(host, spec, times, link) {
       Object.assign(this, { host, times, link, inView: true, drag: null, fixed: null });
@@ -172,12 +47,17 @@ const AlulaPlot = (() => {
         })),
       }));
       link.add(this);
-      this.listen();
+      AlulaLink.listen(this);
       new ResizeObserver(() => { if (!this.fixed) soon(this); }).observe(host);
       new IntersectionObserver((e) => { this.inView = e[e.length - 1].isIntersecting; }).observe(host);
     }
 
-    /* Draw at a fixed width and sharpness (for paper), or by the page again with null. */
+    soon() { soon(this); }
+    get left() { return LEFT; }
+    get right() { return this.width - RIGHT; }
+
+    /* Draw at a fixed width and sharpness with panels of a share of their height (for paper), or
+       by the page again with null. */
     fix(size) {
       this.fixed = size;
       this.draw();
@@ -210,12 +90,14 @@ const AlulaPlot = (() => {
       let y = 0;
       this.width = width;
       for (const p of this.panels) {
-        p.entries = [...p.lines.map((l) => [l.style, l.name]), ...p.bands.map((b) => ["band", b.name])];
+        // a curve alone in its panel is named by the label
+        const lines = p.lines.length > 1 ? p.lines.map((l) => [l.style, l.name]) : [];
+        p.entries = [...lines, ...p.bands.map((b) => ["band", b.name])];
         p.legend = p.entries.reduce((sum, [, name]) => sum + 32 + c.measureText(name).width, 0);
         p.rows = c.measureText(p.label).width + 50 + p.legend > width - RIGHT ? 2 : 1;
         p.head = y;
         p.top = y + ROW * p.rows + 2;
-        p.bottom = p.top + (p.small ? 74 : 130);
+        p.bottom = p.top + (p.small ? 74 : 130) * (this.fixed ? this.fixed.height : 1);
         y = p.bottom + GAP;
       }
       return y - GAP + FOOT;
@@ -259,9 +141,9 @@ const AlulaPlot = (() => {
       const [low, high] = this.scaleOf(p, i, j);
       const right = this.width - RIGHT;
       const y = (v) => p.bottom - ((v - low) / (high - low)) * (p.bottom - p.top);
-      const t = ticks(low, high, p.small ? 3 : 4);
+      const t = ticks(low, high, p.small ? 4 : 5);
       const size = Math.max(Math.abs(low), Math.abs(high));
-      const e = size < 0.01 || size >= 1e5 ? 3 * Math.floor(Math.log10(size) / 3) : 0;
+      const e = size < 0.01 || size >= 1e5 ? 3 * Math.floor((Math.log10(size) + 1) / 3) : 0;
       c.lineWidth = 1;
       c.textBaseline = "middle";
       c.textAlign = "right";
@@ -269,7 +151,8 @@ const AlulaPlot = (() => {
         c.strokeStyle = Math.abs(v) < t.step * 1e-6 ? this.color.axis : this.color.grid;
         line(c, LEFT, crisp(y(v)), right, crisp(y(v)));
         c.fillStyle = this.color.muted;
-        c.fillText(format(v / 10 ** e, t.step / 10 ** e), LEFT - 6, y(v));
+        // a number at the upper edge would run into the label
+        if (y(v) > p.top + 4) c.fillText(format(v / 10 ** e, t.step / 10 ** e), LEFT - 6, y(v));
       }
       c.strokeStyle = this.color.grid;
       for (const v of this.timeTicks().values) line(c, crisp(this.x(v)), p.top, crisp(this.x(v)), p.bottom);
@@ -333,7 +216,7 @@ const AlulaPlot = (() => {
         for (let k = i; k < j; k++) {
           const t = this.times.at(k);
           if (!Number.isNaN(lows.v[k])) {
-            put(this.x(t), lows.v[k], highs.v[k], t - last > this.times.gap);
+            put(this.x(t), lows.v[k], highs.v[k], last === -Infinity || t - last > this.times.gap);
             last = t;
           } else last = -Infinity;
         }
@@ -456,69 +339,6 @@ const AlulaPlot = (() => {
       c.fillStyle = this.color.ink;
       c.fillText("time in the log, s", (LEFT + this.width - RIGHT) / 2, height - 1);
     }
-
-    listen() {
-      const h = this.host, link = this.link;
-      const x = (e) => e.clientX - this.canvas.getBoundingClientRect().left;
-      const inside = (v) => Math.min(Math.max(v, LEFT), this.width - RIGHT);
-      h.addEventListener("pointerdown", (e) => {
-        if (e.button > 1) return;
-        const pan = e.pointerType === "touch" || e.shiftKey || e.button === 1;
-        this.drag = { kind: pan ? "pan" : "zoom", from: inside(x(e)), to: inside(x(e)), at: this.time(x(e)) };
-        h.setPointerCapture(e.pointerId);
-        h.focus({ preventScroll: true });
-        if (pan) e.preventDefault();
-      });
-      h.addEventListener("pointermove", (e) => {
-        const at = inside(x(e));
-        if (this.drag && this.drag.kind === "pan") {
-          const by = this.drag.at - this.time(at);
-          link.set(link.low + by, link.high + by);
-        } else if (this.drag) this.drag.to = at;
-        link.point(this.time(at));
-      });
-      h.addEventListener("pointerup", () => {
-        const d = this.drag;
-        this.drag = null;
-        if (d && d.kind === "zoom" && Math.abs(d.to - d.from) > 4) {
-          const a = this.time(d.from), b = this.time(d.to);
-          link.set(Math.min(a, b), Math.max(a, b));
-        } else soon(this);
-      });
-      h.addEventListener("pointercancel", () => { this.drag = null; soon(this); });
-      h.addEventListener("pointerleave", () => { if (!this.drag) link.point(null); });
-      h.addEventListener("dblclick", () => link.reset());
-      // The wheel scrolls the page until the plot is chosen, so that nobody is caught in it.
-      h.addEventListener("wheel", (e) => {
-        if (!(e.ctrlKey || document.activeElement === h)) return;
-        e.preventDefault();
-        if (Math.abs(e.deltaX) > Math.abs(e.deltaY)) link.pan(e.deltaX / 1000);
-        else link.zoom(Math.exp(Math.sign(e.deltaY) * Math.min(Math.abs(e.deltaY), 120) * 0.002), this.time(inside(x(e))));
-      }, { passive: false });
-      h.addEventListener("keydown", (e) => {
-        if (e.ctrlKey || e.metaKey || e.altKey) return;
-        const act = {
-          ArrowLeft: () => link.pan(-0.1), ArrowRight: () => link.pan(0.1),
-          "+": () => link.zoom(0.7), "=": () => link.zoom(0.7), "-": () => link.zoom(1 / 0.7),
-          0: () => link.reset(), "[": () => this.step(-1), "]": () => this.step(1),
-          Escape: () => link.point(null),
-        }[e.key];
-        if (!act) return;
-        e.preventDefault();
-        act();
-      });
-    }
-
-    /* Move the cursor by samples and say aloud what it reads. */
-    step(by) {
-      const { low, high, cursor } = this.link;
-      const from = cursor === null ? this.times.nearest((low + high) / 2) : this.times.nearest(cursor) + by;
-      const k = Math.min(Math.max(from, 0), this.times.n - 1);
-      this.link.point(this.times.at(k));
-      if (this.live) {
-        this.live.textContent = this.panels.map((p) => `${p.label}: ${this.values(p, k).join(", ")}`).join("; ");
-      }
-    }
   }
 
   const crisp = (v) => Math.round(v) + 0.5;
@@ -536,5 +356,5 @@ const AlulaPlot = (() => {
     return out;
   }
 
-  return { Times, Link, Plot, redraw: (plots) => plots.forEach(soon) };
+  return { Plot, redraw: (plots) => plots.forEach(soon) };
 })();

@@ -103,7 +103,9 @@ class FigureStore:
                 f"Drawn from {len(keep)} of {total} samples: of each stretch the lowest and the "
                 "highest of every curve. All samples were used in the computation."
             )
-        held_out = tag("span", "held out: not used in the fit", class_="tag") if figure.held_out else ""
+        held_out = (
+            tag("span", "held out: not used in the fit", class_="tag") if figure.held_out else ""
+        )
         what = "; ".join(p.label for p in figure.panels)
         return tag(
             "figure",
@@ -117,7 +119,7 @@ class FigureStore:
                 tabindex=0,
                 role="group",
                 aria_roledescription="zoomable plot",
-                aria_label=f"{figure.title}. {what}, over time in the log, {t[0]:.1f} to {t[-1]:.1f} s.",
+                aria_label=f"{figure.title}. {what}, over {t[0]:.1f} to {t[-1]:.1f} s of the log.",
             ),
             tag("p", join(" ".join(note)), class_="note") if note else "",
         )
@@ -127,7 +129,8 @@ class FigureStore:
         return json_block("alula-plots", {"arrays": self._arrays, "figures": self._figures})
 
     def _values(self, values: Array, keep: np.ndarray[Any, np.dtype[np.intp]] | None) -> str:
-        chosen = values if keep is None else values[keep]
+        chosen = np.where(np.isfinite(values), values, np.nan)
+        chosen = chosen if keep is None else chosen[keep]
         return self._carry(np.ascontiguousarray(chosen, dtype="<f4").tobytes())
 
     def _times(self, t: Array) -> Any:

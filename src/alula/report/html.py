@@ -27,7 +27,7 @@ class Html(str):
 
 
 def escape(value: object) -> Html:
-    """`value` as markup: an Html unchanged, anything else as text with every special sign escaped."""
+    """`value` as markup: Html unchanged, anything else as text with its special signs escaped."""
     if isinstance(value, Html):
         return value
     return Html(html.escape(_UNSEEN.sub("\ufffd", str(value)), quote=True))
@@ -59,7 +59,7 @@ def table(
     numeric: Iterable[int] = (),
     class_: str | None = None,
 ) -> Html:
-    """A table with a caption; the first cell of a row is its heading, `numeric` columns align right."""
+    """A table with a caption; a row's first cell is its heading, `numeric` columns align right."""
     right = frozenset(numeric)
 
     def cell(kind: str, column: int, content: object, scope: str | None = None) -> Html:

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from alula.base.messages import Message
 from alula.flight import Maneuver, SourceFile
 from alula.identify.result import Identification
 from alula.reconstruct.result import Reconstruction
+
+if TYPE_CHECKING:
+    from alula.logs.card import LogCard
 
 
 @dataclass(frozen=True)
@@ -17,8 +20,7 @@ class ReportInput:
     """Everything the page shows.
 
     aircraft: label to value with its unit, as text ('wing area' to '64.0 m²').
-    cards: one mapping per log: `id`, `channels` (each `name rate n start end gaps nan min median
-    max unit source`, SI) and `maneuvers` (each `id` and what the card knows of it).
+    cards: one per log, with its files and messages.
     provenance: what is needed to make the result again: hashes, versions, commit, instruction
     set, seed; a value may itself be a mapping. date: as it shall stand on the page.
     """
@@ -27,17 +29,20 @@ class ReportInput:
     path: str
     date: str
     aircraft: Mapping[str, str] = field(default_factory=dict)
-    files: tuple[SourceFile, ...] = ()
-    cards: tuple[Mapping[str, Any], ...] = ()
+    cards: tuple[LogCard, ...] = ()
     maneuvers: tuple[Maneuver, ...] = ()
     reconstruction: Reconstruction | None = None
     identification: Identification | None = None
     messages: tuple[Message, ...] = ()
     provenance: Mapping[str, Any] = field(default_factory=dict)
 
+    def files(self) -> tuple[SourceFile, ...]:
+        """Every file that was read, once."""
+        return tuple(dict.fromkeys(f for card in self.cards for f in card.files))
+
     def all_messages(self) -> tuple[Message, ...]:
         """The messages of every stage, each once, in the order in which they arose."""
-        found = list(self.messages)
+        found = [m for card in self.cards for m in card.messages] + list(self.messages)
         if self.reconstruction is not None:
             found += self.reconstruction.messages
         if self.identification is not None:

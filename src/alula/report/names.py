@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from alula.base.units import expected_unit
+
 WORDS = {
     "u": "velocity forward",
     "v": "velocity right",
@@ -39,7 +41,7 @@ WORDS = {
     "dr": "rudder",
     "df": "flap",
     "dt": "throttle",
-    "thrust": "thrust",
+    "thrust": "all engines",
     "CX": "force forward",
     "CY": "force right",
     "CZ": "force down",
@@ -51,24 +53,29 @@ WORDS = {
     "Cn": "yawing moment",
 }
 
-_UNITS = {
-    "m/s": "u v w V V_cas V_ias v_north v_east v_down wind_n wind_e wind_d wind_x wind_y wind_z",
-    "rad": "phi theta psi alpha beta beta_flank de da dr df b_alpha b_beta b_phi b_theta b_psi",
-    "rad/s": "p q r b_p b_q b_r",
-    "rad/s2": "pdot qdot rdot",
-    "m/s2": "ax ay az b_ax b_ay b_az",
-    "m": "h h_gps x y z north east down b_h",
-    "N": "thrust",
-    "kg/m3": "rho",
-}
-_UNIT = {name: unit for unit, names in _UNITS.items() for name in names.split()}
+_STATES = {"x": "m", "y": "m", "z": "m", "wind_n": "m/s", "wind_e": "m/s", "wind_d": "m/s"}
 
 
 def unit_of(name: str) -> str:
-    """SI unit of a state or channel by its name; dimensionless where the name is not known."""
-    return _UNIT.get(name, "1")
+    """SI unit of a state, constant or channel by its name; dimensionless where it is not known.
+
+    'b_alpha' is a bias in the unit of alpha, 'k_alpha' a scale error.
+    """
+    if name.startswith("k_"):
+        return "1"
+    base = name.removeprefix("b_")
+    return _STATES.get(base) or expected_unit(base) or "1"
+
+
+def meaning(name: str) -> str:
+    """'bias of angle of attack' for 'b_alpha'; empty where the name has no words."""
+    for start, kind in (("b_", "bias of "), ("k_", "scale error of ")):
+        if name.startswith(start):
+            base = name.removeprefix(start)
+            return kind + WORDS.get(base, base)
+    return WORDS.get(name, "")
 
 
 def titled(name: str) -> str:
     """'alpha, angle of attack'; the bare name where it has no words."""
-    return f"{name}, {WORDS[name]}" if name in WORDS else name
+    return f"{name}, {meaning(name)}" if meaning(name) else name

@@ -77,9 +77,7 @@ def plus_minus(value: float, error: float) -> str:
     top = math.floor(math.log10(scale))
     if -4 < top < 5 and decimals <= 7:
         places = max(decimals, 0)
-        return _minus(
-            f"{round(value, decimals):.{places}f} ± {round(error, decimals):.{places}f}"
-        )
+        return _minus(f"{round(value, decimals):.{places}f} ± {round(error, decimals):.{places}f}")
     places = max(top - exponent + 1, 0)
     a, b = value / 10.0**top, error / 10.0**top
     return f"({_minus(f'{a:.{places}f} ± {b:.{places}f}')}) {power_of_ten(top)}"
@@ -99,6 +97,18 @@ def interval(low: float, high: float) -> str:
         return _minus(f"{round(low, decimals):.{places}f} … {round(high, decimals):.{places}f}")
     places, ten = max(top + decimals, 0), 10.0**top
     return f"({_minus(f'{low / ten:.{places}f} … {high / ten:.{places}f}')}) {power_of_ten(top)}"
+
+
+def compact(value: float, digits: int = 6) -> str:
+    """A number that is known exactly, without trailing zeros: 25, 99.98, 1234.56."""
+    return _minus(f"{value:.{digits}g}") if abs(value) < 10.0**digits else _minus(f"{value:.0f}")
+
+
+def span(start: float | None, end: float | None) -> str:
+    """'start … end' to the millisecond, as short as it can be written."""
+    if start is None or end is None:
+        return MISSING
+    return " … ".join(_minus(f"{v:.3f}".rstrip("0").rstrip(".")) for v in (start, end))
 
 
 def percent(ratio: float, digits: int = 2) -> str:

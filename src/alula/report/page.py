@@ -18,6 +18,7 @@ from alula.report.sections.parameters import parameters
 from alula.report.sections.reconstruction import reconstruction
 from alula.report.sections.summary import header
 
+_SCRIPTS = ("alula_series.js", "alula_link.js", "alula_plot.js", "report.js")
 _BUDGET = 2_000_000  # bytes of plot data, so that the page stays well under 3 MB
 _LEAST = 600  # samples that a figure carries in any case: two per pixel of its width
 
@@ -30,7 +31,7 @@ def render(report: ReportInput) -> str:
     figures = FigureStore(most_samples(report))
     sections = _sections(report, figures)
     style = _text("page.css") + _running_head(report)
-    scripts = [_text("alula_plot.js"), _text("report.js")]
+    scripts = [_text(name) for name in _SCRIPTS]
     policy = (
         f"default-src 'none'; style-src {_hash(style)}; "
         f"script-src {' '.join(map(_hash, scripts))}; "
@@ -77,7 +78,7 @@ def render(report: ReportInput) -> str:
 def _sections(report: ReportInput, figures: FigureStore) -> list[tuple[str, str, Html]]:
     """(anchor, title, content) of each section that has something to show."""
     found: list[tuple[str, str, Html]] = []
-    if report.cards or report.files:
+    if report.cards:
         found.append(("log", "Log card", log_cards(report)))
     if report.maneuvers:
         found.append(("maneuvers", "Maneuvers", maneuvers(report)))
@@ -99,9 +100,9 @@ def _sections(report: ReportInput, figures: FigureStore) -> list[tuple[str, str,
 
 _HOW_TO = tag(
     "p",
-    "The plots of one maneuver share their time axis. Drag to zoom, Shift-drag to pan, double-click "
-    "to reset; the wheel zooms in a plot that was clicked. Keys in a focused plot: arrows pan, "
-    "+ and − zoom, 0 resets, [ and ] move the cursor from sample to sample.",
+    "The plots of one maneuver share their time axis. Drag to zoom, Shift-drag to pan, "
+    "double-click to reset; the wheel zooms in a plot that was clicked. Keys in a focused plot: "
+    "arrows pan, + and − zoom, 0 resets, [ and ] move the cursor from sample to sample.",
     class_="note screen",
 )
 

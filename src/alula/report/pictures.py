@@ -40,22 +40,25 @@ _MARKS = {
 }
 
 
-def mark(level: str, words: object) -> Html:
-    """A verdict: a mark whose shape tells as much as its color, and the words beside it."""
+def mark(level: str, words: object, *, long: bool = False) -> Html:
+    """A verdict: a mark whose shape tells as much as its color, and the words beside it.
+
+    long: the words are a sentence, in the color of text.
+    """
     picture = Html(
         f'<svg class="mark" width="12" height="12" viewBox="0 0 12 12" aria-hidden="true">'
         f"{_MARKS[level]}</svg>"
     )
-    return tag("span", picture, " ", escape(words), class_=f"verdict {level}")
+    return tag(
+        "span", picture, " ", escape(words), class_=f"verdict {level}{' long' if long else ''}"
+    )
 
 
-def interval_picture(
-    value: float, low: float, high: float, truth: float | None = None
-) -> Html:
-    """A 95 % interval, its value and zero on one axis; a diamond marks the truth where known."""
+def interval_picture(value: float, low: float, high: float, truth: float | None = None) -> Html:
+    """A 95 % interval and its value on one axis with zero; with the truth instead where known."""
     if not (math.isfinite(low) and math.isfinite(high) and math.isfinite(value)):
         return Html("")
-    points = [low, high, 0.0] + ([truth] if truth is not None else [])
+    points = [low, high, 0.0 if truth is None else truth]
     left, right = min(points), max(points)
     span = (right - left) or 1.0
     width, height, pad = 150.0, 18.0, 6.0
@@ -76,7 +79,7 @@ def interval_picture(
         height,
         label,
         tag("line", x1=f"{pad:g}", x2=f"{width - pad:g}", y1="9", y2="9", class_="rail"),
-        upright(0.0, 1, 17, "zero"),
+        upright(0.0, 1, 17, "zero") if left <= 0.0 <= right else "",
         diamond,
         tag("line", x1=x(low), x2=x(high), y1="9", y2="9", class_="bar"),
         upright(low, 5, 13, "bar"),
@@ -102,11 +105,17 @@ def within_picture(value: float, low: float, high: float, label: str) -> Html:
         height,
         label,
         tag("line", x1="4", x2=f"{width - 4:g}", y1="9", y2="9", class_="rail"),
-        tag("rect", x=f"{x(low):.1f}", y="3", width=f"{max(x(high) - x(low), 1):.1f}", height="12",
-            class_="expected"),
+        tag(
+            "rect",
+            x=f"{x(low):.1f}",
+            y="3",
+            width=f"{max(x(high) - x(low), 1):.1f}",
+            height="12",
+            class_="expected",
+        ),
         tag("circle", cx=f"{x(value):.1f}", cy="9", r="4", class_="dot"),
         *(_text(x(v), 30, number(v, 3), a) for v, a in zip((low, high), ends[::-1], strict=True)),
-        class_="interval",
+        class_="interval within",
     )
 
 
@@ -125,14 +134,12 @@ def heat_map(names: Sequence[str], correlation: Array, title: str) -> Html:
         parts.append(_text(left - 6, y + cell / 2 + 4, names[i], "end"))
         for j in range(i + 1):
             r = float(correlation[i, j])
-            if math.isnan(r):
-                continue
-            step = min(10, round(abs(r) * 10))
-            sign = "p" if r > 0 else "m"
-            parts.append(
-                _cell(left + cell * j, y, cell - 1, f"{sign}{step}", names[i], names[j], r)
+            step = 0 if math.isnan(r) else min(10, round(abs(r) * 10))
+            look = (
+                "none" if math.isnan(r) else "self" if i == j else f"{'p' if r > 0 else 'm'}{step}"
             )
-            if numbers:
+            parts.append(_cell(left + cell * j, y, cell - 1, look, names[i], names[j], r))
+            if numbers and not math.isnan(r):
                 text = "1" if i == j else f"{r:.2f}".replace("-", "−").replace("0.", ".")
                 parts.append(
                     _text(
@@ -140,7 +147,7 @@ def heat_map(names: Sequence[str], correlation: Array, title: str) -> Html:
                         y + cell / 2 + 4,
                         text,
                         "middle",
-                        class_="over" if step >= 7 else "on",
+                        class_="over" if step >= 7 and i != j else "on",
                     )
                 )
     top = cell * n

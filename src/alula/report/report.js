@@ -10,11 +10,11 @@
     if (!decoded.has(id)) decoded.set(id, new Float32Array(bytes(id)));
     return decoded.get(id);
   };
-  const times = (t) => "y" in t ? AlulaPlot.Times.of(new Float64Array(bytes(t.y)))
-    : AlulaPlot.Times.uniform(t.start, t.step, t.n);
+  const times = (t) => "y" in t ? AlulaSeries.Times.of(new Float64Array(bytes(t.y)))
+    : AlulaSeries.Times.uniform(t.start, t.step, t.n);
   const links = new Map();
   const link = (group) => {
-    if (!links.has(group)) links.set(group, new AlulaPlot.Link());
+    if (!links.has(group)) links.set(group, new AlulaLink.Link());
     return links.get(group);
   };
 
@@ -49,7 +49,7 @@
   addEventListener("beforeprint", () => {
     before = root.dataset.theme || "";
     root.dataset.theme = "light";
-    for (const plot of plots) plot.fix({ width: 350, scale: 3 });
+    for (const plot of plots) plot.fix({ width: 350, scale: 3, height: 0.8 });
   });
   addEventListener("afterprint", () => {
     if (before) root.dataset.theme = before; else delete root.dataset.theme;

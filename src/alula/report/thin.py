@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -26,7 +27,7 @@ def kept_samples(
     stretches = max((most - 2) // per_stretch, 1)
     edges = np.linspace(0, n, stretches + 1).astype(np.intp)
     keep = {0, n - 1}
-    for low, high in zip(edges[:-1], edges[1:], strict=True):
+    for low, high in pairwise(edges.tolist()):
         for column in columns:
             piece = column[low:high]
             missing = np.isnan(piece)

@@ -4,16 +4,17 @@
 // (which equals the batch update). Source: Dittrich 2016, Eq. (3.22) to (3.26).
 #include <alula/filters/path_model.hpp>
 #include <alula/math/cholesky.hpp>
+#include <limits>
 
 namespace alula {
 
-template <class T>
+template <class T, int R>
 class Extended {
  public:
-  static constexpr int ld = kMaxStates;
+  static constexpr int kRow = R;
 
-  T x[kMaxStates] = {};
-  T P[kMaxStates][kMaxStates] = {};  // full, symmetric
+  T x[R] = {};
+  alignas(64) T P[R][R] = {};  // full, symmetric
   int repairs = 0;
 
   bool predict(const PathModel<T>& model, const T* u0, const T* u1, T dt) {
@@ -26,7 +27,7 @@ class Extended {
   int update(const PathModel<T>& model, const T* u, const T* z, T* innovation, T* deviation);
 
   // C = P F' with the F of the last prediction.
-  void cross(const PathModel<T>& model, const T (*before)[kMaxStates], T (*C)[kMaxStates]) const {
+  void cross(const PathModel<T>& model, const T (*before)[R], T (*C)[R]) const {
     const int n = model.states;
     for (int i = 0; i < n; ++i) {
       for (int m = 0; m < model.motion; ++m) {
@@ -39,29 +40,31 @@ class Extended {
   }
 
  private:
-  T F_[kMotionStatesWithPosition][kMaxStates];
-  T H_[kMaxOutputs][kMaxStates];
+  T F_[kMotionStatesWithPosition][R];
+  T H_[kMaxOutputs][R];
 
   template <int N>
   bool predict(const PathModel<T>& model, const T* u0, const T* u1, T dt) {
     const int n = model.states;
     T Q[kMotionStates][kMotionStates];
     path_input_noise(model, x, dt, Q);
-    path_step_jacobian<N>(model, x, u0, u1, dt, F_);
-    T FP[N][kMaxStates];
-    for (int i = 0; i < N; ++i) {
-      for (int j = 0; j < n; ++j) FP[i][j] = T(0);
-      for (int s = 0; s < model.dynamic; ++s) {
-        const T f = F_[i][s];
-        for (int j = 0; j < n; ++j) FP[i][j] += f * P[s][j];
-      }
+    path_step_jacobian<N, R>(model, x, u0, u1, dt, F_);
+    T FP[N][R], transposed[R][kShortRow];
+    for (int k = 0; k < model.dynamic; ++k) {
+      clear<kShortRow>(transposed[k]);
+      for (int j = 0; j < N; ++j) transposed[k][j] = F_[j][k];
     }
     for (int i = 0; i < N; ++i) {
-      for (int j = i; j < N; ++j) {
-        T s = j < kMotionStates ? Q[i][j] : T(0);
-        for (int k = 0; k < model.dynamic; ++k) s += FP[i][k] * F_[j][k];
-        P[i][j] = P[j][i] = s;
-      }
+      clear<R>(FP[i]);
+      for (int s = 0; s < model.dynamic; ++s)
+        if (F_[i][s] != T(0)) add_scaled<R>(FP[i], F_[i][s], P[s]);
+    }
+    for (int i = 0; i < N; ++i) {
+      T row[kShortRow] = {};
+      if (i < kMotionStates)
+        for (int j = i; j < kMotionStates; ++j) row[j] = Q[i][j];
+      for (int k = 0; k < model.dynamic; ++k) add_scaled<kShortRow>(row, FP[i][k], transposed[k]);
+      for (int j = i; j < N; ++j) P[i][j] = P[j][i] = row[j];
       for (int c = N; c < n; ++c) P[i][c] = P[c][i] = FP[i][c];
       if (!(std::abs(x[i]) < T(1e30))) return false;
     }
@@ -70,50 +73,41 @@ class Extended {
   }
 
   bool repair(int n) {
-    T U[kMaxStates][kMaxStates];
-    const T floor = sizeof(T) == 8 ? T(1e-14) : T(1e-6);
-    const int raised = cholesky(&P[0][0], &U[0][0], n, ld, floor);
-    if (raised < 0) return false;
-    if (raised == 0) return true;
-    repairs += raised;
-    multiply_back(&U[0][0], &P[0][0], n, ld);
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; j < i; ++j) P[i][j] = P[j][i];
-    return true;
+    T U[R][R];
+    const int raised = cholesky<R>(P, U, n);
+    if (raised > 0) multiply_back<R>(U, P, n);
+    repairs += raised > 0 ? raised : 0;
+    return raised >= 0;
   }
 };
 
-template <class T>
-int Extended<T>::update(const PathModel<T>& model, const T* u, const T* z, T* innovation,
+template <class T, int R>
+int Extended<T, R>::update(const PathModel<T>& model, const T* u, const T* z, T* innovation,
                         T* deviation) {
   const int n = model.states;
-  T predicted[kMaxOutputs], step[kMaxStates] = {}, PH[kMaxStates], M[kMaxStates][kMaxStates];
+  T predicted[kMaxOutputs], step[R] = {}, PH[R], M[R][R];
   int used = 0;
   bool close = false;
-  path_outputs_jacobian(model, x, u, predicted, H_);
+  path_outputs_jacobian<R>(model, x, u, predicted, H_);
   for (int s = 0; s < model.sensors.size(); ++s) {
-    innovation[s] = deviation[s] = T(0) / T(0);
+    innovation[s] = deviation[s] = std::numeric_limits<T>::quiet_NaN();
     if (!std::isfinite(z[s])) continue;
     const T* h = H_[s];
     const T variance = model.sensors[s].variance;
-    for (int i = 0; i < n; ++i) PH[i] = T(0);
+    clear<R>(PH);
     T e = wrapped(model.sensors[s].quantity, z[s] - predicted[s]);
     for (int j = 0; j < n; ++j) {
       if (h[j] == T(0)) continue;
       e -= h[j] * step[j];
-      const T f = h[j];
-      for (int i = 0; i < n; ++i) PH[i] += f * P[j][i];
+      add_scaled<R>(PH, h[j], P[j]);
     }
     T total = variance;
     for (int j = 0; j < n; ++j) total += h[j] * PH[j];
     if (!(total > T(0)) || !(total < T(1e30))) return -1;
     const T inverse = T(1) / total;
     if (variance > T(1e-6) * total) {
-      for (int i = 0; i < n; ++i) {
-        const T gain = PH[i] * inverse;
-        step[i] += gain * e;
-        for (int j = 0; j < n; ++j) P[i][j] -= gain * PH[j];
-      }
+      for (int i = 0; i < n; ++i) add_scaled<R>(P[i], -PH[i] * inverse, PH);
+      add_scaled<R>(step, e * inverse, PH);
     } else {
       // The plain form would cancel more than six digits: Joseph's form (I-KH) P (I-KH)' + K R K'.
       close = true;

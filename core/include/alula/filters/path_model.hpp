@@ -44,7 +44,7 @@ template <class T>
 struct PathModel {
   int states = kMotionStates;     // all: motion, then constants
   int motion = kMotionStates;     // 7, or 9 with position
-  int dynamic = kMotionStates;    // the first so many enter the rates (motion and inertial errors)
+  int dynamic = kMotionStates;    // the first so many enter the rates: motion, inertial errors
   T gravity = T(9.80665);
   int slot[kPathUnknowns];        // state index or -1
   T fixed[kPathUnknowns] = {};    // value where there is no slot
@@ -150,14 +150,13 @@ inline S path_quantity(const PathSensor<T>& sensor, const S* y, const PathAir<S>
 
 // The reading of sensor i under the whole state x.
 template <class S, class T>
-inline S path_output(const PathModel<T>& model, const PathSensor<T>& sensor, const S* x,
+inline S path_output(const PathSensor<T>& sensor, const S* x,
                      const PathAir<S>& air) {
   S induced;
   const S true_value = path_quantity(sensor, x, air, induced);
   const S scale = sensor.scale_slot >= 0 ? x[sensor.scale_slot] : S(sensor.scale);
   const S bias = sensor.bias_slot >= 0 ? x[sensor.bias_slot] : S(sensor.bias);
   const S reference(sensor.reference);
-  (void)model;
   return true_value + scale * (true_value - reference) + induced + bias;
 }
 
@@ -171,9 +170,9 @@ inline T wrapped(Quantity quantity, T innovation) {
 
 // The readings of all sensors with their exact Jacobian H (sensors x states) at state x.
 // Directions: u v w phi theta psi, p q r, wind; scale and bias enter linearly.
-template <class T>
+template <int R, class T>
 inline void path_outputs_jacobian(const PathModel<T>& model, const T* x, const T* measured, T* z,
-                                  T (*H)[kMaxStates]) {
+                                  T (*H)[R]) {
   using D = Dual<T, 12>;
   T m[kInertialInputs];
   true_inputs(model, x, measured, m);
@@ -195,9 +194,9 @@ inline void path_outputs_jacobian(const PathModel<T>& model, const T* x, const T
     z[s] = quantity.value + scale * change + induced.value + bias;
     T* h = H[s];
     for (int j = 0; j < model.states; ++j) h[j] = T(0);
+    const D total = quantity * (T(1) + scale) + induced;
     T slope[12];
-    for (int j = 0; j < 12; ++j)
-      slope[j] = (T(1) + scale) * quantity.slope[j] + induced.slope[j];
+    for (int j = 0; j < 12; ++j) slope[j] = total.slope_of(j);
     for (int j = 0; j < 6; ++j) h[kU + j] = slope[j];
     if (sensor.quantity == Quantity::height) h[kHeight] = T(1) + scale;
     if (sensor.quantity == Quantity::north) h[kNorth] = T(1) + scale;
@@ -214,9 +213,9 @@ inline void path_outputs_jacobian(const PathModel<T>& model, const T* x, const T
 }
 
 // The step of the motion states under measured inputs with its Jacobian F (motion x states).
-template <int N, class T>
+template <int N, int R, class T>
 inline void path_step_jacobian(const PathModel<T>& model, T* x, const T* u0, const T* u1, T dt,
-                               T (*F)[kMaxStates]) {
+                               T (*F)[R]) {
   T m0[kInertialInputs], m1[kInertialInputs], A[N][N], B[N][kInertialInputs];
   true_inputs(model, x, u0, m0);
   true_inputs(model, x, u1, m1);

@@ -39,14 +39,14 @@ inline void restart(Filter& filter, const PathModel<T>& model, const T* initial)
   }
 }
 
-template <class T>
-inline void pack(const T (*P)[kMaxStates], int n, T* packed) {
+template <int R, class T>
+inline void pack(const T (*P)[R], int n, T* packed) {
   for (int i = 0; i < n; ++i)
     for (int j = i; j < n; ++j) *packed++ = P[i][j];
 }
 
-template <class T>
-inline void unpack(const T* packed, int n, T (*P)[kMaxStates]) {
+template <int R, class T>
+inline void unpack(const T* packed, int n, T (*P)[R]) {
   for (int i = 0; i < n; ++i)
     for (int j = i; j < n; ++j) P[i][j] = P[j][i] = *packed++;
 }
@@ -67,7 +67,7 @@ int run_filter(Filter& filter, const PathModel<T>& model, const PathRecord<T>& r
     if (filter.update(model, u, record.readings + k * ny, innovation, deviation) < 0) return k;
     if (history.x)
       for (int i = 0; i < n; ++i) history.x[k * n + i] = filter.x[i];
-    if (history.covariance) pack(filter.P, n, history.covariance + k * (n * (n + 1) / 2));
+    if (history.covariance) pack<Filter::kRow>(filter.P, n, history.covariance + k * (n * (n + 1) / 2));
     T nis = T(0);
     for (int s = 0; s < ny; ++s) {
       if (history.innovation) history.innovation[k * ny + s] = innovation[s];
@@ -86,15 +86,14 @@ template <class Filter, class T>
 int run_smoother(Filter& filter, const PathModel<T>& model, const PathRecord<T>& record,
                  const PathHistory<T>& history) {
   const int n = model.states, packed = n * (n + 1) / 2;
-  const T floor = sizeof(T) == 8 ? T(1e-14) : T(1e-6);
-  T before[kMaxStates][kMaxStates], later[kMaxStates][kMaxStates], C[kMaxStates][kMaxStates];
-  T U[kMaxStates][kMaxStates], GD[kMaxStates][kMaxStates];
+  constexpr int R = Filter::kRow;
+  T before[R][R], later[R][R], C[R][R], U[R][R], GD[R][R];
   for (int k = record.samples - 1; k > 0; --k) {
     T* x = history.x + (k - 1) * n;
     T* p = history.covariance + (k - 1) * packed;
     const T* u = record.inputs + k * kInertialInputs;
-    unpack(p, n, before);
-    unpack(history.covariance + k * packed, n, later);
+    unpack<R>(p, n, before);
+    unpack<R>(history.covariance + k * packed, n, later);
     for (int i = 0; i < n; ++i) {
       filter.x[i] = x[i];
       for (int j = 0; j < n; ++j) filter.P[i][j] = before[i][j];
@@ -108,8 +107,8 @@ int run_smoother(Filter& filter, const PathModel<T>& model, const PathRecord<T>&
       if (!filter.predict(model, u - kInertialInputs, u, record.t[k] - record.t[k - 1])) return k;
       filter.cross(model, before, C);
     }
-    if (cholesky(&filter.P[0][0], &U[0][0], n, kMaxStates, floor) < 0) return k;
-    for (int i = 0; i < n; ++i) solve(&U[0][0], C[i], n, kMaxStates);  // C becomes the gain
+    if (cholesky<R>(filter.P, U, n) < 0) return k;
+    for (int i = 0; i < n; ++i) solve<R>(U, C[i], n);  // C becomes the gain
     for (int i = 0; i < n; ++i) {
       T s = T(0);
       for (int j = 0; j < n; ++j) s += C[i][j] * (history.x[k * n + j] - filter.x[j]);
@@ -132,17 +131,19 @@ int run_smoother(Filter& filter, const PathModel<T>& model, const PathRecord<T>&
 }
 
 // Open loop: the kinematics integrated from state x0 (states) with constants as they are, no
-// measurement used. Writes motion (samples, motion), readings (samples, sensors) and, where the
+// measurement used. `held` (samples, motion) may give motion states that are taken as measured
+// instead of integrated; NaN where a state is free, null where all are. Writes motion (samples, motion), readings (samples, sensors) and, where the
 // pointers are set, their exact Jacobians with respect to x0: motion_jacobian (samples, motion,
 // states) and readings_jacobian (samples, sensors, states). This is the model of the
 // maximum-likelihood form, and its sensitivities. Dittrich 2016, Eq. (3.62), variational.
 template <class T>
 void run_open_loop(const PathModel<T>& model, const T* t, const T* inputs, int samples,
-                   const T* x0, T* motion, T* readings, T* motion_jacobian, T* readings_jacobian) {
+                   const T* x0, const T* held, T* motion, T* readings, T* motion_jacobian,
+                   T* readings_jacobian) {
   const int n = model.states, ny = model.sensors.size(), nm = model.motion;
-  T x[kMaxStates], z[kMaxOutputs], F[kMotionStatesWithPosition][kMaxStates];
-  T H[kMaxOutputs][kMaxStates];
-  T J[kMotionStatesWithPosition][kMaxStates] = {}, next[kMotionStatesWithPosition][kMaxStates];
+  constexpr int R = kMaxStates;
+  T x[R], z[kMaxOutputs], F[kMotionStatesWithPosition][R], H[kMaxOutputs][R];
+  T J[kMotionStatesWithPosition][R] = {}, next[kMotionStatesWithPosition][R];
   for (int i = 0; i < n; ++i) x[i] = x0[i];
   for (int i = 0; i < nm; ++i) J[i][i] = T(1);
   for (int k = 0; k < samples; ++k) {
@@ -150,9 +151,9 @@ void run_open_loop(const PathModel<T>& model, const T* t, const T* inputs, int s
       const T* u = inputs + k * kInertialInputs;
       const T dt = t[k] - t[k - 1];
       if (nm == kMotionStates)
-        path_step_jacobian<kMotionStates>(model, x, u - kInertialInputs, u, dt, F);
+        path_step_jacobian<kMotionStates, R>(model, x, u - kInertialInputs, u, dt, F);
       else
-        path_step_jacobian<kMotionStatesWithPosition>(model, x, u - kInertialInputs, u, dt, F);
+        path_step_jacobian<kMotionStatesWithPosition, R>(model, x, u - kInertialInputs, u, dt, F);
       for (int i = 0; i < nm; ++i) {
         for (int j = 0; j < n; ++j) next[i][j] = j < nm ? T(0) : F[i][j];
         for (int s = 0; s < nm; ++s)
@@ -161,7 +162,12 @@ void run_open_loop(const PathModel<T>& model, const T* t, const T* inputs, int s
       for (int i = 0; i < nm; ++i)
         for (int j = 0; j < n; ++j) J[i][j] = next[i][j];
     }
-    path_outputs_jacobian(model, x, inputs + k * kInertialInputs, z, H);
+    for (int i = 0; held && i < nm; ++i)
+      if (std::isfinite(held[k * nm + i])) {
+        x[i] = held[k * nm + i];
+        for (int j = 0; j < n; ++j) J[i][j] = T(0);
+      }
+    path_outputs_jacobian<R>(model, x, inputs + k * kInertialInputs, z, H);
     for (int i = 0; i < nm; ++i) {
       motion[k * nm + i] = x[i];
       if (motion_jacobian)

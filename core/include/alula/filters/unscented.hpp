@@ -5,27 +5,27 @@
 // covariances about the predicted means.
 #include <alula/filters/path_model.hpp>
 #include <alula/math/cholesky.hpp>
+#include <limits>
 
 namespace alula {
 
-template <class T>
+template <class T, int R>
 class Unscented {
  public:
+  static constexpr int kRow = R;
   static constexpr int W = kLanes;
-  static constexpr int kPoints = 2 * kMaxStates + 8;  // 49, rounded up to whole registers
-  static constexpr int ld = kMaxStates;
   using L = Lanes<T, W>;
 
-  T x[kMaxStates] = {};
-  T P[kMaxStates][kMaxStates] = {};  // upper triangle
-  int repairs = 0;                   // pivots raised since the start
+  T x[R] = {};
+  alignas(64) T P[R][R] = {};  // upper triangle; the lower one is scratch
+  int repairs = 0;             // pivots raised since the start
 
   // Scaled transform with alpha 1, beta 2, kappa 0: no negative weight, spread sqrt(n).
   // False where the covariance or a point is no longer finite.
   bool predict(const PathModel<T>& model, const T* u0, const T* u1, T dt) {
     T Q[kMotionStates][kMotionStates];
     path_input_noise(model, x, dt, Q);
-    if (!draw(model)) return false;
+    if (!factor(model)) return false;
     return model.motion == kMotionStates ? predict<kMotionStates>(model, u0, u1, dt, Q)
                                          : predict<kMotionStatesWithPosition>(model, u0, u1, dt, Q);
   }
@@ -35,181 +35,172 @@ class Unscented {
   int update(const PathModel<T>& model, const T* u, const T* z, T* innovation, T* deviation);
 
   // C = covariance of the state before the last prediction with the one after it (n x n).
-  void cross(const PathModel<T>& model, const T (*before)[kMaxStates], T (*C)[kMaxStates]) const {
+  void cross(const PathModel<T>& model, const T (*before)[R], T (*C)[R]) const {
     const int n = model.states;
     for (int i = 0; i < n; ++i) {
       for (int m = 0; m < model.motion; ++m) {
         T s = T(0);
-        for (int j = 0; j <= i && j < model.dynamic; ++j) s += U_[j][i] * D_[m][j];
+        for (int j = 0; j <= i; ++j) s += U_[j][i] * D_[m][j];
         C[i][m] = s;
       }
-      for (int c = model.motion; c < n; ++c) C[i][c] = i < c ? before[i][c] : before[c][i];
+      for (int c = model.motion; c < n; ++c) C[i][c] = before[i][c];
     }
   }
 
  private:
-  alignas(64) T X_[kMaxStates][kPoints];
-  alignas(64) T Y_[kMaxOutputs][kPoints];
-  T U_[kMaxStates][kMaxStates];             // U'U = P before the last prediction or update
-  T D_[kMotionStatesWithPosition][kMaxStates];  // weighted differences of opposite points
-  T S_[kMaxOutputs][kMaxOutputs], C_[kMaxOutputs][kMaxStates];
+  // One slot for each point along the columns of the lower factor, first on the plus side, then on
+  // the minus side; the slots from n on repeat the mean. X_: motion states, Y_: readings.
+  alignas(64) T X_[kMotionStatesWithPosition][2 * R];
+  alignas(64) T Y_[kMaxOutputs][2 * R];
+  alignas(64) T U_[R][R];            // U'U = P before the last prediction or update
+  alignas(64) T spread_[R][R] = {};  // sqrt(n) times the lower factor, row by row
+  alignas(64) T D_[kMotionStatesWithPosition][R];  // weighted differences of opposite points
+  alignas(64) T C_[kMaxOutputs][R];
 
-  static int rounded(int points) { return (points + W - 1) / W * W; }
-
-  // Point 0 is the mean, 1 + 2j and 2 + 2j lie along column j of the lower factor; the rest pads.
-  bool draw(const PathModel<T>& model) {
-    const int n = model.states, padded = rounded(2 * n + 1);
-    const T floor = sizeof(T) == 8 ? T(1e-14) : T(1e-6);
-    const int raised = cholesky(&P[0][0], &U_[0][0], n, ld, floor);
+  // Factor of P and the points' deviations from the mean.
+  bool factor(const PathModel<T>& model) {
+    const int n = model.states;
+    const int raised = cholesky<R>(P, U_, n);
     if (raised < 0) return false;
     if (raised > 0) {
       repairs += raised;
-      multiply_back(&U_[0][0], &P[0][0], n, ld);
+      multiply_back<R>(U_, P, n);
     }
-    const T spread = std::sqrt(T(n));
-    for (int i = 0; i < n; ++i) {
-      T* row = X_[i];
-      for (int k = 0; k < padded; ++k) row[k] = x[i];
-      for (int j = 0; j <= i; ++j) {
-        const T d = spread * U_[j][i];
-        row[1 + 2 * j] += d;
-        row[2 + 2 * j] -= d;
-      }
-    }
+    const T root = std::sqrt(T(n));
+    for (int j = 0; j < n; ++j)
+      for (int i = j; i < n; ++i) spread_[i][j] = root * U_[j][i];
     return true;
+  }
+
+  // The state of the W points from slot b on; sign: which side of the mean.
+  void points(int b, T sign, int count, L* state) const {
+    for (int i = 0; i < count; ++i) state[i] = L(x[i]) + L(sign) * L::load(&spread_[i][b]);
+  }
+
+  // Turns the values of all slots of one row into deviations from their mean, which it returns.
+  // `middle` is the mean point's value; slots that repeat it add nothing. `difference` gets the
+  // weighted differences of opposite points.
+  static T center(T* row, T middle, int n, T* difference) {
+    const T wi = T(0.5) / T(n), weight = wi * std::sqrt(T(n));
+    L total(T(0));  // of small differences, which keep their digits
+    for (int k = 0; k < 2 * R; k += W) total += L::load(row + k) - L(middle);
+    const T mean = middle + wi * sum(total);
+    for (int k = 0; k < R; k += W) {
+      const L plus = L::load(row + k), minus = L::load(row + R + k);
+      (L(weight) * (plus - minus)).store(difference + k);
+      (plus - L(mean)).store(row + k);
+      (minus - L(mean)).store(row + R + k);
+    }
+    return mean;
+  }
+
+  // out[j] for j in [from, count): covariance of rows `from` and j of deviations. The sums run
+  // over all slots; those that repeat the mean are more than the mean's weight of 2 by a known
+  // number. `middle` is the deviation of the mean point.
+  static void products(const T (*rows)[2 * R], int from, int count, int n, const T* middle, T* out) {
+    const T wi = T(0.5) / T(n), mean_weight = T(2) - wi * T(2 * (R - n));
+    const int last = count - 1;
+    for (int j = from; j < count; j += 4) {
+      T s[4];
+      dot4<2 * R>(rows[from], rows[j], rows[j + 1 < last ? j + 1 : last],
+                  rows[j + 2 < last ? j + 2 : last], rows[j + 3 < last ? j + 3 : last], s);
+      for (int k = 0; k < 4 && j + k < count; ++k)
+        out[j + k] = wi * s[k] + mean_weight * middle[from] * middle[j + k];
+    }
   }
 
   template <int N>
   bool predict(const PathModel<T>& model, const T* u0, const T* u1, T dt,
                const T (*Q)[kMotionStates]);
-
-  static T dot(const T* a, const T* b, int padded) {
-    L s(T(0));
-    for (int k = 0; k < padded; k += W) s += L::load(a + k) * L::load(b + k);
-    return sum(s);
-  }
 };
 
-template <class T>
+template <class T, int R>
 template <int N>
-bool Unscented<T>::predict(const PathModel<T>& model, const T* u0, const T* u1, T dt,
-                           const T (*Q)[kMotionStates]) {
-  const int n = model.states, used = 2 * model.dynamic + 1, padded = rounded(used);
-  // Points along columns beyond `dynamic` differ only in constants that the rates do not know:
-  // they move as the mean does and are not computed.
-  for (int b = 0; b < padded; b += W) {
-    L state[kMaxStates], m0[kInertialInputs], m1[kInertialInputs];
-    for (int i = 0; i < model.dynamic; ++i) state[i] = L::load(&X_[i][b]);
-    true_inputs(model, state, u0, m0);
-    true_inputs(model, state, u1, m1);
-    point_step<N>(state, m0, m1, model.gravity, dt);
-    for (int i = 0; i < N; ++i) state[i].store(&X_[i][b]);
-  }
-  const T wi = T(0.5) / T(n), center = T(2) - wi + T(2 * (n - model.dynamic)) * wi;
-  const T weight = wi * std::sqrt(T(n));
+bool Unscented<T, R>::predict(const PathModel<T>& model, const T* u0, const T* u1, T dt,
+                              const T (*Q)[kMotionStates]) {
+  const int n = model.states;
+  for (int side = 0; side < 2; ++side)
+    for (int b = 0; b <= n; b += W) {
+      L state[kMaxStates], m0[kInertialInputs], m1[kInertialInputs];
+      points(b, side == 0 ? T(1) : T(-1), model.dynamic, state);
+      true_inputs(model, state, u0, m0);
+      true_inputs(model, state, u1, m1);
+      point_step<N>(state, m0, m1, model.gravity, dt);
+      for (int i = 0; i < N; ++i) state[i].store(&X_[i][side * R + b]);
+    }
+  T middle[N];
   for (int i = 0; i < N; ++i) {
-    T* row = X_[i];
-    const T middle = row[0];
-    // Deviations from the center first: the mean of small numbers keeps its digits.
-    L total(T(0));
-    for (int k = 0; k < padded; k += W) {
-      const L d = L::load(row + k) - L(middle);
-      d.store(row + k);
-      total += d;
-    }
-    for (int k = used; k < padded; ++k) {
-      // Padding repeats the mean point, so its deviation is the center's: zero.
-      row[k] = T(0);
-    }
-    const T shift = wi * sum(total);
-    x[i] = middle + shift;
-    for (int k = 0; k < padded; k += W) (L::load(row + k) - L(shift)).store(row + k);
-    for (int k = used; k < padded; ++k) row[k] = T(0);
-    for (int j = 0; j < model.dynamic; ++j) D_[i][j] = weight * (row[1 + 2 * j] - row[2 + 2 * j]);
+    const T value = X_[i][n];
+    for (int b = n + 1; b < R; ++b) X_[i][b] = X_[i][R + b] = value;
+    x[i] = center(X_[i], value, n, D_[i]);
+    middle[i] = value - x[i];
     if (!(std::abs(x[i]) < T(1e30))) return false;
   }
   for (int i = 0; i < N; ++i) {
-    for (int j = i; j < N; ++j) {
-      P[i][j] = wi * dot(X_[i], X_[j], padded) + center * X_[i][0] * X_[j][0];
-      if (j < kMotionStates) P[i][j] += Q[i][j];
-    }
     T* row = P[i];
-    for (int c = N; c < n; ++c) row[c] = T(0);
-    for (int j = 0; j < model.dynamic; ++j) {
-      const T d = D_[i][j];
-      for (int c = j > N ? j : N; c < n; ++c) row[c] += d * U_[j][c];
-    }
+    clear<R>(row);
+    for (int j = 0; j < model.dynamic; ++j) add_scaled<R>(row, D_[i][j], U_[j]);
+    products(X_, i, N, n, middle, row);
+    if (i < kMotionStates)
+      for (int j = i; j < kMotionStates; ++j) row[j] += Q[i][j];
   }
   for (int c = N; c < n; ++c) P[c][c] += dt * model.walk[c] * model.walk[c];
   return true;
 }
 
-template <class T>
-int Unscented<T>::update(const PathModel<T>& model, const T* u, const T* z, T* innovation,
-                         T* deviation) {
+template <class T, int R>
+int Unscented<T, R>::update(const PathModel<T>& model, const T* u, const T* z, T* innovation,
+                            T* deviation) {
   int present[kMaxOutputs], ny = 0;
   for (int s = 0; s < model.sensors.size(); ++s) {
-    innovation[s] = deviation[s] = T(0) / T(0);
+    innovation[s] = deviation[s] = std::numeric_limits<T>::quiet_NaN();
     if (std::isfinite(z[s])) present[ny++] = s;
   }
   if (ny == 0) return 0;
-  if (!draw(model)) return -1;
+  if (!factor(model)) return -1;
 
-  const int n = model.states, used = 2 * n + 1, padded = rounded(used);
-  for (int b = 0; b < padded; b += W) {
-    L state[kMaxStates], m[kInertialInputs], wind[3];
-    for (int i = 0; i < n; ++i) state[i] = L::load(&X_[i][b]);
-    true_inputs(model, state, u, m);
-    for (int i = 0; i < 3; ++i) wind[i] = unknown(model, state, kWindNorth + i);
-    const PathAir<L> air = path_air(model, state, wind, m);
-    for (int s = 0; s < ny; ++s)
-      path_output(model, model.sensors[present[s]], state, air).store(&Y_[s][b]);
-  }
+  const int n = model.states;
+  for (int side = 0; side < 2; ++side)
+    for (int b = 0; b <= n; b += W) {
+      L state[kMaxStates], m[kInertialInputs], wind[3];
+      points(b, side == 0 ? T(1) : T(-1), n, state);
+      true_inputs(model, state, u, m);
+      for (int i = 0; i < 3; ++i) wind[i] = unknown(model, state, kWindNorth + i);
+      const PathAir<L> air = path_air(model, state, wind, m);
+      for (int s = 0; s < ny; ++s)
+        path_output(model.sensors[present[s]], state, air).store(&Y_[s][side * R + b]);
+    }
 
-  const T wi = T(0.5) / T(n), center = T(2) - wi, weight = wi * std::sqrt(T(n));
-  T e[kMaxOutputs];
+  T e[kMaxOutputs], middle[kMaxOutputs], S[kMaxOutputs][kMaxOutputs];
   for (int s = 0; s < ny; ++s) {
-    T* row = Y_[s];
-    const T middle = row[0];
-    L total(T(0));
-    for (int k = 0; k < padded; k += W) {
-      const L d = L::load(row + k) - L(middle);
-      d.store(row + k);
-      total += d;
-    }
-    const T shift = wi * sum(total);  // the padding repeats the mean point: zero
-    for (int k = 0; k < padded; k += W) (L::load(row + k) - L(shift)).store(row + k);
-    for (int k = used; k < padded; ++k) row[k] = T(0);
-    e[s] = wrapped(model.sensors[present[s]].quantity, z[present[s]] - (middle + shift));
-    T* cross_row = C_[s];
-    for (int i = 0; i < n; ++i) cross_row[i] = T(0);
-    for (int j = 0; j < n; ++j) {
-      const T d = weight * (row[1 + 2 * j] - row[2 + 2 * j]);
-      for (int i = j; i < n; ++i) cross_row[i] += d * U_[j][i];
-    }
+    T difference[R];
+    const T value = Y_[s][n];
+    for (int b = n + 1; b < R; ++b) Y_[s][b] = Y_[s][R + b] = value;
+    const T mean = center(Y_[s], value, n, difference);
+    middle[s] = value - mean;
+    e[s] = wrapped(model.sensors[present[s]].quantity, z[present[s]] - mean);
+    clear<R>(C_[s]);
+    for (int j = 0; j < n; ++j) add_scaled<R>(C_[s], difference[j], U_[j]);
   }
-  for (int s = 0; s < ny; ++s)
-    for (int t = s; t < ny; ++t)
-      S_[s][t] = wi * dot(Y_[s], Y_[t], padded) + center * Y_[s][0] * Y_[t][0] +
-                 (s == t ? model.sensors[present[s]].variance : T(0));
+  for (int s = 0; s < ny; ++s) {
+    products(Y_, s, ny, n, middle, S[s]);
+    S[s][s] += model.sensors[present[s]].variance;
+  }
 
   // Readings one after another: each is freed from what those before it already told.
   for (int s = 0; s < ny; ++s) {
-    if (!(S_[s][s] > T(0))) return -1;
-    const T inverse = T(1) / S_[s][s];
+    if (!(S[s][s] > T(0))) return -1;
+    const T inverse = T(1) / S[s][s];
     for (int t = s + 1; t < ny; ++t) {
-      const T f = S_[s][t] * inverse;
-      for (int r = t; r < ny; ++r) S_[t][r] -= f * S_[s][r];
-      for (int i = 0; i < n; ++i) C_[t][i] -= f * C_[s][i];
+      const T f = S[s][t] * inverse;
+      for (int r = t; r < ny; ++r) S[t][r] -= f * S[s][r];
+      add_scaled<R>(C_[t], -f, C_[s]);
       e[t] -= f * e[s];
     }
-    for (int i = 0; i < n; ++i) {
-      const T gain = C_[s][i] * inverse;
-      x[i] += gain * e[s];
-      for (int j = i; j < n; ++j) P[i][j] -= gain * C_[s][j];
-    }
+    for (int i = 0; i < n; ++i) add_scaled<R>(P[i], -C_[s][i] * inverse, C_[s]);
+    add_scaled<R>(x, e[s] * inverse, C_[s]);
     innovation[present[s]] = e[s];
-    deviation[present[s]] = std::sqrt(S_[s][s]);
+    deviation[present[s]] = std::sqrt(S[s][s]);
   }
   return ny;
 }

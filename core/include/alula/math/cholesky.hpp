@@ -1,66 +1,64 @@
 #pragma once
-// Factors of small covariance matrices in caller's storage. Upper triangle, row by row: the inner
-// loops run along contiguous memory and vectorize without changing the order of any sum.
+// Factors of small covariance matrices in caller's storage, rows of fixed length R (rows.hpp).
+// Upper triangle, row by row: inner loops run along memory and keep the order of every sum.
+#include <alula/math/rows.hpp>
 #include <cmath>
 
 namespace alula {
 
-// U'U = A for the upper triangle of A (n x n, row length ld), into the upper triangle of U (may
-// be A). A pivot below `floor` times its diagonal is raised to that: rounding has then eaten the
-// digits, and the direction is as good as exactly known. Returns how many were raised; -1 where a
-// diagonal is not a positive number.
+// A direction whose share of its diagonal is below this has been eaten by rounding.
 template <class T>
-inline int cholesky(const T* A, T* U, int n, int ld, T floor) {
-  for (int i = 0; i < n; ++i)
-    for (int j = i; j < n; ++j) U[i * ld + j] = A[i * ld + j];
+inline constexpr T kPivotFloor = sizeof(T) == 8 ? T(1e-14) : T(1e-6);
+
+// U'U = A by the upper triangle of A (n x n); below the diagonal U is zero. A pivot below
+// kPivotFloor times its diagonal is raised to that: the direction is as good as exactly known.
+// Returns how many were raised; -1 where a diagonal is not a positive finite number.
+template <int R, class T>
+inline int cholesky(const T (*A)[R], T (*U)[R], int n) {
   int raised = 0;
-  T diagonal[64];
+  T diagonal[R];
   for (int i = 0; i < n; ++i) {
-    diagonal[i] = U[i * ld + i];
-    if (!(diagonal[i] > T(0)) || !(diagonal[i] < T(1e30) * T(1e8))) return -1;
+    scale<R>(U[i], T(1), A[i]);
+    diagonal[i] = A[i][i];
+    if (!(diagonal[i] > T(0)) || !(diagonal[i] < T(1e37))) return -1;
   }
   for (int k = 0; k < n; ++k) {
-    T* row = U + k * ld;
-    if (!(row[k] > floor * diagonal[k])) {
-      row[k] = floor * diagonal[k];
+    T* row = U[k];
+    for (int j = 0; j < k; ++j) row[j] = T(0);
+    T pivot = row[k];
+    if (!(pivot > kPivotFloor<T> * diagonal[k])) {
+      pivot = kPivotFloor<T> * diagonal[k];
+      clear<R>(row);  // a positive definite matrix leaves no room for the rest of the row
+      row[k] = pivot;
       ++raised;
-      // Positive definiteness bounds the rest of the row by the diagonals.
-      for (int j = k + 1; j < n; ++j) row[j] = T(0);
     }
-    const T root = std::sqrt(row[k]), inverse = T(1) / root;
-    row[k] = root;
-    for (int j = k + 1; j < n; ++j) row[j] *= inverse;
-    for (int i = k + 1; i < n; ++i) {
-      const T f = row[i];
-      T* target = U + i * ld;
-      for (int j = i; j < n; ++j) target[j] -= f * row[j];
-    }
+    scale<R>(row, T(1) / std::sqrt(pivot), row);
+    for (int i = k + 1; i < n; ++i) add_scaled<R>(U[i], -row[i], row);
   }
   return raised;
 }
 
-// A = U'U, upper triangle; A must not be U.
-template <class T>
-inline void multiply_back(const T* U, T* A, int n, int ld) {
+// A = U'U, whole.
+template <int R, class T>
+inline void multiply_back(const T (*U)[R], T (*A)[R], int n) {
+  for (int i = 0; i < n; ++i) clear<R>(A[i]);
+  for (int k = 0; k < n; ++k)
+    for (int i = k; i < n; ++i) add_scaled<R>(A[i], U[k][i], U[k]);
   for (int i = 0; i < n; ++i)
-    for (int j = i; j < n; ++j) {
-      T s = T(0);
-      for (int k = 0; k <= i; ++k) s += U[k * ld + i] * U[k * ld + j];
-      A[i * ld + j] = s;
-    }
+    for (int j = 0; j < i; ++j) A[i][j] = A[j][i];
 }
 
 // Solves U'U x = b in place.
-template <class T>
-inline void solve(const T* U, T* b, int n, int ld) {
+template <int R, class T>
+inline void solve(const T (*U)[R], T* b, int n) {
   for (int i = 0; i < n; ++i) {
-    b[i] /= U[i * ld + i];
-    for (int j = i + 1; j < n; ++j) b[j] -= U[i * ld + j] * b[i];
+    b[i] /= U[i][i];
+    for (int j = i + 1; j < n; ++j) b[j] -= U[i][j] * b[i];
   }
   for (int i = n - 1; i >= 0; --i) {
     T s = b[i];
-    for (int j = i + 1; j < n; ++j) s -= U[i * ld + j] * b[j];
-    b[i] = s / U[i * ld + i];
+    for (int j = i + 1; j < n; ++j) s -= U[i][j] * b[j];
+    b[i] = s / U[i][i];
   }
 }
 

@@ -1,68 +1,97 @@
 #pragma once
 // Forward-mode derivatives: a value with its slopes along N directions, exact to rounding.
+#include <alula/math/lanes.hpp>
 #include <cmath>
+#include <type_traits>
 
 namespace alula {
 
 template <class T, int N>
 struct Dual {
-  T value{};
-  T slope[N]{};
+  // Slopes lie in registers of four where N allows.
+  static constexpr int kWidth = N % 4 == 0 ? 4 : 1;
+  static constexpr int kBlocks = N / kWidth;
+  using Block = std::conditional_t<kWidth == 4, Lanes<T, 4>, T>;
 
-  constexpr Dual() = default;
-  constexpr Dual(T v) : value(v) {}
+  T value;
+  Block slope[kBlocks];
+
+  Dual() = default;
+  Dual(T v) : value(v) {
+    for (int i = 0; i < kBlocks; ++i) slope[i] = Block(T(0));
+  }
 
   // A variable: slope one along its own direction.
-  static constexpr Dual variable(T v, int direction) {
+  static Dual variable(T v, int direction) {
     Dual r(v);
-    r.slope[direction] = T(1);
+    r.set_slope(direction, T(1));
     return r;
   }
 
-  constexpr Dual& operator+=(const Dual& b) {
+  T slope_of(int direction) const {
+    if constexpr (kWidth == 1) return slope[direction];
+    else return slope[direction / kWidth][direction % kWidth];
+  }
+  void set_slope(int direction, T s) {
+    if constexpr (kWidth == 1) slope[direction] = s;
+    else slope[direction / kWidth].set(direction % kWidth, s);
+  }
+
+  // f(a) by the chain rule: its value and derivative at a.value.
+  Dual chain(T f, T df) const {
+    Dual r;
+    r.value = f;
+    const Block factor(df);
+    for (int i = 0; i < kBlocks; ++i) r.slope[i] = factor * slope[i];
+    return r;
+  }
+  // Likewise f(a, b), by both partial derivatives.
+  static Dual chain(T f, T da, const Dual& a, T db, const Dual& b) {
+    Dual r;
+    r.value = f;
+    const Block fa(da), fb(db);
+    for (int i = 0; i < kBlocks; ++i) r.slope[i] = fa * a.slope[i] + fb * b.slope[i];
+    return r;
+  }
+
+  Dual& operator+=(const Dual& b) {
     value += b.value;
-    for (int i = 0; i < N; ++i) slope[i] += b.slope[i];
+    for (int i = 0; i < kBlocks; ++i) slope[i] += b.slope[i];
     return *this;
   }
-  constexpr Dual& operator-=(const Dual& b) {
+  Dual& operator-=(const Dual& b) {
     value -= b.value;
-    for (int i = 0; i < N; ++i) slope[i] -= b.slope[i];
+    for (int i = 0; i < kBlocks; ++i) slope[i] -= b.slope[i];
     return *this;
   }
-  constexpr Dual& operator*=(const Dual& b) { return *this = *this * b; }
+  Dual& operator*=(const Dual& b) { return *this = *this * b; }
 
-  friend constexpr Dual operator+(Dual a, const Dual& b) { return a += b; }
-  friend constexpr Dual operator-(Dual a, const Dual& b) { return a -= b; }
-  friend constexpr Dual operator-(const Dual& a) { return a.chain(-a.value, T(-1)); }
-  friend constexpr Dual operator*(const Dual& a, const Dual& b) {
-    Dual r;
-    r.value = a.value * b.value;
-    for (int i = 0; i < N; ++i) r.slope[i] = a.slope[i] * b.value + a.value * b.slope[i];
-    return r;
+  friend Dual operator+(Dual a, const Dual& b) { return a += b; }
+  friend Dual operator-(Dual a, const Dual& b) { return a -= b; }
+  friend Dual operator-(const Dual& a) { return a.chain(-a.value, T(-1)); }
+  friend Dual operator*(const Dual& a, const Dual& b) {
+    return chain(a.value * b.value, b.value, a, a.value, b);
   }
-  friend constexpr Dual operator/(const Dual& a, const Dual& b) {
-    Dual r;
-    const T inverse = T(1) / b.value;
-    r.value = a.value * inverse;
-    for (int i = 0; i < N; ++i) r.slope[i] = (a.slope[i] - r.value * b.slope[i]) * inverse;
-    return r;
+  friend Dual operator/(const Dual& a, const Dual& b) {
+    const T inverse = T(1) / b.value, quotient = a.value * inverse;
+    return chain(quotient, inverse, a, -quotient * inverse, b);
   }
 
   // With plain numbers, which have no slopes.
-  friend constexpr Dual operator+(Dual a, T b) { a.value += b; return a; }
-  friend constexpr Dual operator+(T a, Dual b) { b.value += a; return b; }
-  friend constexpr Dual operator-(Dual a, T b) { a.value -= b; return a; }
-  friend constexpr Dual operator-(T a, const Dual& b) { return b.chain(a - b.value, T(-1)); }
-  friend constexpr Dual operator*(const Dual& a, T b) { return a.chain(a.value * b, b); }
-  friend constexpr Dual operator*(T a, const Dual& b) { return b.chain(a * b.value, a); }
-  friend constexpr Dual operator/(const Dual& a, T b) { return a * (T(1) / b); }
-  friend constexpr Dual operator/(T a, const Dual& b) {
+  friend Dual operator+(Dual a, T b) { a.value += b; return a; }
+  friend Dual operator+(T a, Dual b) { b.value += a; return b; }
+  friend Dual operator-(Dual a, T b) { a.value -= b; return a; }
+  friend Dual operator-(T a, const Dual& b) { return b.chain(a - b.value, T(-1)); }
+  friend Dual operator*(const Dual& a, T b) { return a.chain(a.value * b, b); }
+  friend Dual operator*(T a, const Dual& b) { return b.chain(a * b.value, a); }
+  friend Dual operator/(const Dual& a, T b) { return a * (T(1) / b); }
+  friend Dual operator/(T a, const Dual& b) {
     const T inverse = T(1) / b.value;
     return b.chain(a * inverse, -a * inverse * inverse);
   }
 
-  friend constexpr bool operator<(const Dual& a, const Dual& b) { return a.value < b.value; }
-  friend constexpr bool operator>(const Dual& a, const Dual& b) { return a.value > b.value; }
+  friend bool operator<(const Dual& a, const Dual& b) { return a.value < b.value; }
+  friend bool operator>(const Dual& a, const Dual& b) { return a.value > b.value; }
 
   friend Dual sin(const Dual& a) { return a.chain(std::sin(a.value), std::cos(a.value)); }
   friend Dual cos(const Dual& a) { return a.chain(std::cos(a.value), -std::sin(a.value)); }
@@ -84,19 +113,8 @@ struct Dual {
     return a.chain(std::asin(a.value), T(1) / std::sqrt(T(1) - a.value * a.value));
   }
   friend Dual atan2(const Dual& y, const Dual& x) {
-    Dual r;
-    r.value = std::atan2(y.value, x.value);
     const T k = T(1) / (x.value * x.value + y.value * y.value);
-    for (int i = 0; i < N; ++i) r.slope[i] = (x.value * y.slope[i] - y.value * x.slope[i]) * k;
-    return r;
-  }
-
-  // f(a) by the chain rule: its value and derivative at a.value.
-  constexpr Dual chain(T f, T df) const {
-    Dual r;
-    r.value = f;
-    for (int i = 0; i < N; ++i) r.slope[i] = df * slope[i];
-    return r;
+    return chain(std::atan2(y.value, x.value), x.value * k, y, -y.value * k, x);
   }
 };
 
@@ -105,7 +123,9 @@ constexpr T value_of(const T& x) { return x; }
 template <class T, int N>
 constexpr T value_of(const Dual<T, N>& x) { return x.value; }
 
-// Plain numbers answer to the same name as duals and lanes.
+// Plain numbers answer to the same names as duals and lanes.
+using std::atan2;
+using std::sqrt;
 inline void sincos(double x, double& s, double& c) { s = std::sin(x); c = std::cos(x); }
 inline void sincos(float x, float& s, float& c) { s = std::sin(x); c = std::cos(x); }
 

@@ -75,8 +75,8 @@ inline void point_step_jacobian(T* y, const T* m0, const T* m1, T gravity, T dt,
   for (int i = 0; i < N; ++i) {
     y[i] = x[i].value;
     for (int j = 0; j < N; ++j) A[i][j] = T(i == j && (j == kHeight || j >= kMotionStates));
-    for (int j = 0; j < 6; ++j) A[i][kU + j] = x[i].slope[j];
-    for (int j = 0; j < kInertialInputs; ++j) B[i][j] = x[i].slope[6 + j];
+    for (int j = 0; j < 6; ++j) A[i][kU + j] = x[i].slope_of(j);
+    for (int j = 0; j < kInertialInputs; ++j) B[i][j] = x[i].slope_of(6 + j);
   }
 }
 

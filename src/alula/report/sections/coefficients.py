@@ -29,10 +29,18 @@ def _fits(result: Identification) -> Html:
         for f in result.fits.values()
     ]
     return table(
-        "Fits. R² and relative rms error (RRMSE) are of the maneuvers of the fit; R² held out is of "
-        "maneuvers the fit never saw. Durbin-Watson far below 2 means colored residuals.",
-        ["Coefficient", "Model", "Samples", "R²", "RRMSE", "Durbin-Watson", "Samples held out",
-         "R² held out"],
+        "Fits. R² and relative rms error (RRMSE) are of the maneuvers of the fit; R² held out is "
+        "of maneuvers the fit never saw. Durbin-Watson far below 2 means colored residuals.",
+        [
+            "Coefficient",
+            "Model",
+            "Samples",
+            "R²",
+            "RRMSE",
+            "Durbin-Watson",
+            "Samples held out",
+            "R² held out",
+        ],
         rows,
         numeric=(2, 3, 4, 5, 6, 7),
     )
@@ -41,10 +49,14 @@ def _fits(result: Identification) -> Html:
 def _coefficient(result: Identification, name: str, figures: FigureStore) -> Html:
     series = [s for s in result.series if s.coefficient == name]
     words = f", {WORDS[name]}" if name in WORDS else ""
+    if name in result.labels:
+        words += f" ({result.labels[name]})"
     return tag(
         "section",
         tag("h3", tag("code", name), words),
-        tag("p", "Model: ", tag("code", f"{name} = {result.fits[name].formula}"), class_="note"),
+        tag(
+            "p", "Model: ", tag("code", f"{name} = {result.fits[name].formula}"), class_="note lead"
+        ),
         tag("div", *(figures.add(_figure(s)) for s in series), class_="grid"),
     )
 

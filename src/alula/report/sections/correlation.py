@@ -15,7 +15,7 @@ _STRONG = 0.9  # usual limit above which two estimates should not be read one by
 
 def correlation(result: Identification) -> Html:
     """Heat maps, and a table of the pairs above 0.9."""
-    r = correlations(result.covariance)
+    r = np.clip(result.correlations, -1.0, 1.0)
     names = [p.name for p in result.parameters]
     owners = np.array([p.coefficient for p in result.parameters])
     maps = []
@@ -42,15 +42,6 @@ def correlation(result: Identification) -> Html:
     )
 
 
-def correlations(covariance: Array) -> Array:
-    """Correlation (n, n) of a covariance (n, n); NaN where a variance is not positive and finite."""
-    variance = np.diag(covariance).copy()
-    variance[~(np.isfinite(variance) & (variance > 0))] = np.nan
-    scale = np.sqrt(variance)
-    r: Array = np.clip(covariance / scale[:, None] / scale[None, :], -1.0, 1.0)
-    return r
-
-
 def _pairs(names: list[str], r: Array) -> Html:
     i, j = np.nonzero(np.tril(np.abs(np.nan_to_num(r)) >= _STRONG, -1))
     if not len(i):
@@ -59,13 +50,17 @@ def _pairs(names: list[str], r: Array) -> Html:
     return table(
         f"Pairs correlated above {_STRONG}: read them together, not one by one.",
         ["First", "Second", "Correlation"],
-        ([tag("code", names[i[k]]), tag("code", names[j[k]]), number(float(r[i[k], j[k]]), 3)]
-         for k in order),
+        (
+            [tag("code", names[i[k]]), tag("code", names[j[k]]), number(float(r[i[k], j[k]]), 3)]
+            for k in order
+        ),
         numeric=(2,),
     )
 
 
-def _across(owners: np.ndarray[tuple[int, ...], np.dtype[np.str_]], names: list[str], r: Array) -> Html:
+def _across(
+    owners: np.ndarray[tuple[int, ...], np.dtype[np.str_]], names: list[str], r: Array
+) -> Html:
     """One sentence on what the maps do not show: correlation between different coefficients."""
     apart = np.where(owners[:, None] != owners[None, :], np.abs(np.nan_to_num(r)), 0.0)
     if apart.size == 0 or apart.max() < 0.05:
@@ -74,5 +69,9 @@ def _across(owners: np.ndarray[tuple[int, ...], np.dtype[np.str_]], names: list[
     return tag(
         "p",
         "Between parameters of different coefficients the largest is ",
-        f"{number(float(r[i, j]), 2)} (", tag("code", names[i]), ", ", tag("code", names[j]), ").",
+        f"{number(float(r[i, j]), 2)} (",
+        tag("code", names[i]),
+        ", ",
+        tag("code", names[j]),
+        ").",
     )

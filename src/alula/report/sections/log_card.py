@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
+import math
+from typing import TYPE_CHECKING
 
 from alula.report.html import Html, join, table, tag
 from alula.report.input import ReportInput
-from alula.report.numbers import MISSING, number, shown
+from alula.report.numbers import MISSING, compact, number, shown, span
+
+if TYPE_CHECKING:
+    from alula.logs.card import ChannelCard, LogCard
 
 
 def log_cards(report: ReportInput) -> Html:
@@ -16,60 +19,59 @@ def log_cards(report: ReportInput) -> Html:
 
 
 def _files(report: ReportInput) -> Html:
-    if not report.files:
-        return Html("")
     return table(
         "Files read. Decoded, skipped and unknown bytes add up to the file's size.",
         ["File", "Bytes", "Decoded", "Skipped", "Unknown", "SHA-256"],
         (
             [tag("code", f.path), f.bytes, f.decoded, f.skipped, f.unknown, tag("code", f.sha256)]
-            for f in report.files
+            for f in report.files()
         ),
         numeric=(1, 2, 3, 4),
         class_="files",
     )
 
 
-def _card(card: Mapping[str, Any]) -> Html:
-    rows = []
-    for channel in card.get("channels", ()):
-        factor, unit = shown(str(channel.get("unit", "")))
-
-        def in_shown(key: str, channel: Mapping[str, Any] = channel, by: float = factor) -> str:
-            value = channel.get(key)
-            return MISSING if value is None else number(by * float(value))
-
-        rows.append(
-            [
-                tag("code", channel.get("name", "")),
-                unit,
-                _plain(channel, "rate", 4),
-                channel.get("n", MISSING),
-                f"{_plain(channel, 'start', 5)} … {_plain(channel, 'end', 5)}",
-                _count(channel.get("gaps")),
-                _count(channel.get("nan")),
-                in_shown("min"),
-                in_shown("median"),
-                in_shown("max"),
-                tag("span", channel.get("source", ""), class_="source"),
-            ]
-        )
+def _card(card: LogCard) -> Html:
     return table(
-        join(["Channels of log ", tag("code", card.get("id", "")), ", as recorded, at their own rates"]),
-        ["Channel", "Unit", "Rate, Hz", "Samples", "Span, s", "Gaps", "Missing", "Min", "Median",
-         "Max", "Source and conversion"],
-        rows,
-        numeric=(2, 3, 5, 6, 7, 8, 9),
+        join(["Channels of log ", tag("code", card.log), ", as recorded, at their own rates"]),
+        [
+            "Channel",
+            "Unit",
+            "Rate, Hz",
+            "Samples",
+            "Span, s",
+            "Gaps",
+            "Missing",
+            "Min",
+            "Median",
+            "Max",
+            "Step",
+            "Source and conversion",
+        ],
+        (_channel(channel) for channel in card.channels),
+        numeric=range(2, 11),
         class_="dense",
     )
 
 
-def _plain(channel: Mapping[str, Any], key: str, digits: int) -> str:
-    value = channel.get(key)
-    return MISSING if value is None else number(float(value), digits)
+def _channel(channel: ChannelCard) -> list[object]:
+    factor, unit = shown(channel.unit)
+    return [
+        tag("code", channel.name),
+        unit,
+        MISSING if math.isnan(channel.rate) else compact(channel.rate, 4),
+        channel.n,
+        span(channel.start, channel.end),
+        _emphasized(len(channel.gaps)),
+        _emphasized(channel.missing),
+        number(factor * channel.minimum),
+        number(factor * channel.median),
+        number(factor * channel.maximum),
+        number(factor * channel.step, 3),
+        tag("span", channel.source, class_="source"),
+    ]
 
 
-def _count(value: Any) -> object:
-    """A number of gaps, also from a list of them; none reads as zero, emphasized if any."""
-    size = len(value) if isinstance(value, list | tuple) else (value or 0)
-    return tag("strong", size) if size else "0"
+def _emphasized(count: int) -> object:
+    """A count that should be zero stands out where it is not."""
+    return tag("strong", count) if count else "0"

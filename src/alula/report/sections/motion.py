@@ -37,7 +37,9 @@ def state_figures(segment: Segment) -> Iterator[Figure]:
         members = list(group)
         for first in range(0, len(members), _PANELS):
             chosen = members[first : first + _PANELS]
-            title = _STATES.get(names[chosen[0]], ", ".join(names[k] for k in chosen))
+            first_name = names[chosen[0]]
+            alone = titled(first_name) if len(chosen) == 1 else ", ".join(names[k] for k in chosen)
+            title = alone if len(chosen) == 1 else _STATES.get(first_name, alone)
             yield Figure(
                 title,
                 segment.maneuver.id,
@@ -69,7 +71,9 @@ def motion_figures(motion: Motion) -> Iterator[Figure]:
 
 
 def _figure(
-    title: str, motion: Motion, columns: dict[str, np.ndarray[tuple[int, ...], np.dtype[np.float64]]]
+    title: str,
+    motion: Motion,
+    columns: dict[str, np.ndarray[tuple[int, ...], np.dtype[np.float64]]],
 ) -> Figure:
     panels = []
     for name, values in columns.items():
@@ -84,7 +88,7 @@ def sensor_figure(sensor: SensorFit, maneuver: Maneuver, title: str) -> Figure:
     factor, unit = shown(sensor.unit)
     if np.isfinite(sensor.innovation).any():
         below = Line("innovation", factor * sensor.innovation, "residual")
-        half, name = 2.0 * factor * sensor.innovation_se, "±2 σ predicted"
+        half, name = 2.0 * factor * sensor.innovation_se, "±2 σ"
     else:
         below = Line("measured − fitted", factor * (sensor.measured - sensor.fitted), "residual")
         half, name = np.full(len(sensor.t), 2.0 * factor * sensor.sigma), "±2 σ stated"
@@ -102,5 +106,4 @@ def sensor_figure(sensor: SensorFit, maneuver: Maneuver, title: str) -> Figure:
             ),
             Panel(f"{below.name} ({unit})", (below,), (Band(name, half),), small=True),
         ),
-        held_out=False,
     )

@@ -35,10 +35,15 @@ def messages(report: ReportInput) -> Html:
 def _table(caption: str, members: Sequence[Message]) -> Html:
     return table(
         caption,
-        ["Where", "Kind", "Expected", "Found", "What to do"],
+        ["Where", "Kind", "Expected", "Found", "What to do, or what was done"],
         (
-            [m.where, join([mark(*_LEVEL[m.level]), " ", tag("code", m.code)]), m.expected, m.found,
-             m.do or MISSING]
+            [
+                m.where,
+                join([mark(*_LEVEL[m.level]), " ", tag("code", m.code)]),
+                m.expected,
+                m.found,
+                m.do or MISSING,
+            ]
             for m in members
         ),
         class_="text",

@@ -24,9 +24,10 @@ def parameters(result: Identification) -> Html:
         [
             tag(
                 "p",
-                f"Method {result.method}. ‘se’ includes colored residuals and the uncertainty of the "
-                "reconstruction; ‘plain se’ would hold if the residuals were white. The picture "
-                "shows the 95 % interval and the value beside zero (upright line). Verdicts: ",
+                f"Method: {result.method}. ‘se’ includes colored residuals and the uncertainty of "
+                "the reconstruction; ‘plain se’ would hold if the residuals were white. The "
+                "picture shows the 95 % interval and the value beside zero (upright line), or "
+                "beside the truth (diamond) where that is known. Verdicts: ",
                 mark("good", "ok"),
                 " resolved; ",
                 mark("caution", "weak"),
@@ -34,7 +35,10 @@ def parameters(result: Identification) -> Html:
                 mark("bad", "not identifiable"),
                 " these data do not determine it, whatever value a fit may give.",
             ),
-            *(_table(name, [p for p in result.parameters if p.coefficient == name]) for name in names),
+            *(
+                _table(name, [p for p in result.parameters if p.coefficient == name])
+                for name in names
+            ),
         ]
     )
 
@@ -42,8 +46,17 @@ def parameters(result: Identification) -> Html:
 def _table(coefficient: str, members: list[Parameter]) -> Html:
     truth = any(p.truth is not None for p in members)
     words = f", {WORDS[coefficient]}" if coefficient in WORDS else ""
-    head = ["Parameter", "Value ± se", "Unit", "95 % interval", "Zero and interval", "se / value",
-            "Plain se", "VIF", "Verdict"]
+    head = [
+        "Parameter",
+        "Value ± se",
+        "Unit",
+        "95 % interval",
+        "Zero and interval",
+        "se / value",
+        "Plain se",
+        "VIF",
+        "Verdict",
+    ]
     rows = []
     for p in members:
         row = _row(p)
@@ -51,7 +64,8 @@ def _table(coefficient: str, members: list[Parameter]) -> Html:
             row.insert(4, number(p.truth) if p.truth is not None else MISSING)
         rows.append(row)
     if truth:
-        head.insert(4, "Truth ◇")
+        head.insert(4, "Truth")
+        head[head.index("Zero and interval")] = "Truth ◇ and interval"
     right = (1, 3, 4, 6, 7, 8) if truth else (1, 3, 5, 6, 7)
     return table(join([tag("code", coefficient), words]), head, rows, numeric=right, class_="dense")
 
@@ -81,6 +95,8 @@ def combination(p: Parameter) -> str:
     for tie in p.tied_to:
         size = abs(tie.weight)
         factor = "" if abs(size - 1.0) < 5e-3 else f"{number(size, 2)} "
-        sign = ("− " if tie.weight < 0 else "") if not text else (" − " if tie.weight < 0 else " + ")
+        sign = (
+            ("− " if tie.weight < 0 else "") if not text else (" − " if tie.weight < 0 else " + ")
+        )
         text += f"{sign}{factor}{tie.name}"
     return text

@@ -9,10 +9,10 @@ import numpy as np
 from alula.reconstruct.result import Reconstruction, Segment, SensorFit
 from alula.report.figures import FigureStore
 from alula.report.html import Html, join, table, tag
-from alula.report.names import titled
+from alula.report.names import meaning, titled
 from alula.report.numbers import number, plus_minus, rms, shown
 from alula.report.pictures import mark, within_picture
-from alula.report.sections.motion import motion_figures, state_figures, sensor_figure
+from alula.report.sections.motion import motion_figures, sensor_figure, state_figures
 
 
 def reconstruction(result: Reconstruction, figures: FigureStore) -> Html:
@@ -20,7 +20,7 @@ def reconstruction(result: Reconstruction, figures: FigureStore) -> Html:
     level = "good" if result.converged else "bad"
     return join(
         [
-            tag("p", mark(level, f"Method {result.method}. {result.status}")),
+            tag("p", mark(level, f"Method: {result.method}. {result.status}", long=True)),
             _constants(result),
             _nis(result),
             _mismatch(result),
@@ -39,6 +39,7 @@ def _constants(result: Reconstruction) -> Html:
         rows.append(
             [
                 tag("code", c.name),
+                meaning(c.name),
                 plus_minus(factor * c.value, factor * c.se),
                 unit,
                 mark("good", "observable")
@@ -49,9 +50,9 @@ def _constants(result: Reconstruction) -> Html:
     return table(
         "Biases, scale factors and other constants, with one standard error. Those of a walking "
         "unknown are of its mean.",
-        ["Constant", "Value ± se", "Unit", "Do the data determine it?"],
+        ["Constant", "Meaning", "Value ± se", "Unit", "Do the data determine it?"],
         rows,
-        numeric=(1,),
+        numeric=(2,),
     )
 
 
@@ -73,7 +74,7 @@ def _nis(result: Reconstruction) -> Html:
     )
     return tag(
         "div",
-        tag("p", mark("good" if inside else "caution", f"{words}: {meaning}.")),
+        tag("p", mark("good" if inside else "caution", f"{words}: {meaning}.", long=True)),
         within_picture(result.nis_mean, low, high, words),
         class_="keep",
     )
@@ -104,13 +105,14 @@ def _whiteness(result: Reconstruction) -> Html:
     for segment in result.segments:
         for s in segment.sensors:
             factor, unit = shown(s.unit)
-            bound = 2.0 / math.sqrt(max(len(s.t), 1))
+            samples = int(np.isfinite(s.measured).sum())
+            bound = 2.0 / math.sqrt(max(samples, 1))
             white = abs(s.whiteness) <= bound
             rows.append(
                 [
                     tag("code", s.name),
                     segment.maneuver.id,
-                    len(s.t),
+                    samples,
                     unit,
                     number(factor * s.sigma, 3),
                     number(factor * rms(s.measured - s.fitted), 3),
@@ -120,10 +122,19 @@ def _whiteness(result: Reconstruction) -> Html:
                 ]
             )
     return table(
-        "Sensors: stated noise, residual (measured minus fitted), share of innovations inside their "
-        "2 σ band (95 % expected) and lag-1 autocorrelation, called white within ±2/√n.",
-        ["Sensor", "Maneuver", "Samples", "Unit", "Stated σ", "Residual rms", "In 2 σ", "Lag 1",
-         "Innovations"],
+        "Sensors: stated noise, residual (measured minus fitted), share of innovations inside "
+        "their 2 σ band (95 % expected) and lag-1 autocorrelation, called white within ±2/√n.",
+        [
+            "Sensor",
+            "Maneuver",
+            "Samples",
+            "Unit",
+            "Stated σ",
+            "Residual rms",
+            "In 2 σ",
+            "Lag 1",
+            "Innovations",
+        ],
         rows,
         numeric=(2, 4, 5, 6, 7),
         class_="dense",

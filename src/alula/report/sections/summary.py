@@ -65,8 +65,9 @@ def reasons(report: ReportInput) -> list[Html]:
         ):
             names = [p.name for p in identification.parameters if p.verdict == verdict_]
             if names:
-                codes = join(", " if k % 2 else tag("code", names[k // 2])
-                             for k in range(2 * len(names) - 1))
+                codes = join(
+                    ", " if k % 2 else tag("code", names[k // 2]) for k in range(2 * len(names) - 1)
+                )
                 found.append(join([start, codes, "."]))
         for fit in identification.fits.values():
             words = f" ({WORDS[fit.coefficient]})" if fit.coefficient in WORDS else ""
@@ -76,8 +77,12 @@ def reasons(report: ReportInput) -> list[Html]:
                 else "no maneuver was held out, so the model is not validated on data it never saw"
             )
             found.append(
-                join([tag("code", fit.coefficient), f"{words}: R² {number(fit.r2, 3)} on {fit.n} "
-                      f"samples of the fit; {held}."])
+                join(
+                    [
+                        tag("code", fit.coefficient),
+                        f"{words}: R² {number(fit.r2, 3)} on {fit.n} samples of the fit; {held}.",
+                    ]
+                )
             )
         if identification.status:
             found.append(escape(f"Identification: {identification.status}"))
@@ -89,8 +94,18 @@ def reasons(report: ReportInput) -> list[Html]:
     levels = [m.level for m in report.all_messages()]
     count = {k: levels.count(k) for k in ("error", "warning", "info")}
     found.append(
-        join([f"Messages: {count['error']} errors, {count['warning']} warnings, "
-              f"{count['info']} notes on what was done to the data; ",
-              tag("a", "all are listed below", href="#messages"), "."])
+        join(
+            [
+                f"Messages: {_many(count['error'], 'error')}, "
+                f"{_many(count['warning'], 'warning')}, {_many(count['info'], 'note')} "
+                "on what was done to the data; ",
+                tag("a", "all are listed below", href="#messages"),
+                ".",
+            ]
+        )
     )
     return found
+
+
+def _many(count: int, what: str) -> str:
+    return f"{count or 'no'} {what}{'' if count == 1 else 's'}"

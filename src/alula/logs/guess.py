@@ -1,0 +1,282 @@
+"""A first project file for a log: guesses from names, units and sizes, all to be confirmed."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from alula.base.arrays import Array
+from alula.base.project import LogSpec
+from alula.base.units import CHANNELS, find_unit, known_channel
+from alula.logs.address import Column
+from alula.logs.fill import HUGE, looks_filled
+from alula.logs.plausibility import doubt_of
+from alula.logs.reader import read_tables
+from alula.logs.synonyms import guess_name
+from alula.logs.table import Table, Tables
+
+# Units to try in turn where nothing states one; the first that the values do not contradict.
+CANDIDATES = {
+    "s": ("s", "ms", "us", "ns"),
+    "rad": ("rad", "deg"),
+    "rad/s": ("rad/s", "deg/s"),
+    "rad/s2": ("rad/s2", "deg/s2"),
+    "m/s2": ("m/s2", "g", "ft/s2"),
+    "m/s": ("m/s", "ft/min"),
+    "kg/s": ("kg/s", "kg/h", "lb/h"),
+    "K": ("K", "degC", "degF"),
+    "Pa": ("Pa", "hPa", "kPa", "inHg"),
+    "kg/m3": ("kg/m3", "slug/ft3"),
+    "1": ("1", "%"),
+}
+BY_SIZE = "its name, unit by size"
+EXAMPLE_S = 20.0  # length of the example maneuver
+
+
+@dataclass(frozen=True)
+class Guess:
+    """One column and what it may be."""
+
+    source: int | str
+    column: Column
+    name: str  # '' if nothing fits
+    unit: str
+    sign: int
+    why: str
+
+
+def new_project(log_path: Path | str, folder: Path | str | None = None) -> str:
+    """TOML text of a project for one log, with every guess marked `# confirm`.
+
+    folder: where the project file will lie, so that the log's path is relative to it; default:
+    the log's own folder. Raises BadInput if the log cannot be read.
+    """
+    path = Path(log_path)
+    log = LogSpec(id=_identifier(path.stem), path=path)
+    tables, messages = read_tables(log)
+    main = _main_table(tables)
+    guesses = _guesses(tables, main)
+    relative = os.path.relpath(path.absolute(), Path(folder or path.parent).absolute())
+    lines = [
+        "# A first guess by `alula new`: confirm or correct every line marked so.",
+        'schema = "alula.project/1"',
+        f"name = {_toml(path.stem)}",
+        'aircraft = "aircraft.toml"  # confirm: the file with reference values and mass',
+        "",
+        "[[logs]]",
+        f"id = {_toml(log.id)}",
+        f"path = {_toml(relative)}",
+    ]
+    if main is not None and main.name and len(tables.tables) > 1:
+        lines.append(f"variable = {_toml(main.name)}  # confirm: the matrix of the channels")
+    fill = _fills(guesses)
+    if fill:
+        values = ", ".join(f"{v:g}" for v in fill)
+        lines.append(f"fill_values = [{values}]  # confirm: looks like 'no data'")
+    lines += [f"# {_comment(str(m))}" for m in (*messages, *tables.messages)]
+    lines += ["", "[channels]", *_channel_lines(guesses), *_maneuver_lines(log.id, guesses)]
+    names = {g.name for g in guesses}
+    lines += ["", "[identify]  # confirm: the formulas to fit"]
+    lines += ["[identify.models]", *_models(names), ""]
+    return "\n".join(lines)
+
+
+def _main_table(tables: Tables) -> Table | None:
+    """The table of most numbers among those with several columns; None if there is none."""
+    several = [t for t in tables.tables if len(t.data) > 1]
+    return max(several, key=lambda t: t.rows * len(t.data), default=None)
+
+
+def _guesses(tables: Tables, main: Table | None) -> list[Guess]:
+    """One guess for each column, the better one where two have the same name."""
+    out: list[Guess] = []
+    for table in tables.tables:
+        for k in range(len(table.data)):
+            column = Column(table, k)
+            label = table.columns[k] or (table.name if len(table.data) == 1 else "")
+            repeated = table.columns.count(label) > 1
+            if label and not repeated:
+                source: int | str = label
+            elif table is main:
+                source = k + 1
+            else:
+                source = f"{table.name}[{k + 1}]"
+            out.append(_guess(source, column, label.rsplit(".", 1)[-1]))
+    if not any(g.name == "t" for g in out):
+        out = _find_time(out)
+    seen: set[str] = set()
+    for i, guess in enumerate(out):
+        if guess.name and guess.name in seen:
+            out[i] = _without(guess, f"looks like '{guess.name}' too")
+        seen.add(guess.name)
+    out = _alike(out)
+    times = next((g.column.values for g in out if g.name == "t"), None)
+    if times is not None:
+        for i, guess in enumerate(out):
+            if guess.name and len(guess.column.values) != len(times):
+                out[i] = _without(guess, f"'{guess.name}'? has a time of its own to be given")
+    return out
+
+
+def _alike(guesses: list[Guess]) -> list[Guess]:
+    """A log with one angle in degrees has all in degrees; ax and ay have the unit of az."""
+    degrees = any(g.unit == "deg" for g in guesses if g.name)
+    vertical = next((g.unit for g in guesses if g.name == "az"), "")
+    out = []
+    for g in guesses:
+        unit = g.unit
+        if g.why == BY_SIZE and degrees:
+            unit = {"rad": "deg", "rad/s": "deg/s", "rad/s2": "deg/s2"}.get(unit, unit)
+        if g.why == BY_SIZE and g.name in ("ax", "ay") and vertical:
+            unit = vertical
+        out.append(g if unit == g.unit else replace(g, unit=unit, why="its name, unit as others"))
+    return out
+
+
+def _without(guess: Guess, why: str) -> Guess:
+    return Guess(guess.source, guess.column, "", guess.unit, 1, why)
+
+
+def _guess(source: int | str, column: Column, label: str) -> Guess:
+    name, unit = guess_name(label) if label else ("", "")
+    values = column.values[np.isfinite(column.values)]
+    if not name or len(values) == 0:
+        return Guess(source, column, "", column.unit, 1, "no number" if not len(values) else "")
+    known = known_channel(name)
+    assert known is not None
+    if column.unit:
+        found = find_unit(column.unit)
+        if found is None or found.si not in (known.unit, *known.also):
+            return Guess(source, column, "", column.unit, 1, f"'{name}'? but in {column.unit}")
+        return Guess(
+            source, column, name, column.unit, _sign(name, column.unit, values), "its name and unit"
+        )
+    if unit:
+        return Guess(source, column, name, unit, _sign(name, unit, values), "its name")
+    unit = _unit_by_size(name, known.unit, values)
+    return Guess(source, column, name, unit, _sign(name, unit, values), BY_SIZE)
+
+
+def _unit_by_size(name: str, si: str, values: Array) -> str:
+    for unit in CANDIDATES.get(si, (si,)):
+        found = find_unit(unit)
+        assert found is not None
+        converted = found.scale * values + found.offset
+        if name == "t":
+            if len(values) > 2 and np.median(np.abs(np.diff(converted))) < 5.0:
+                return unit
+        else:
+            doubt = doubt_of(name, si, converted)
+            if doubt is None or doubt.code in ("axes_z_up", "gravity_removed"):
+                return unit
+    return si
+
+
+def _sign(name: str, unit: str, values: Array) -> int:
+    found = find_unit(unit)
+    if name != "az" or found is None:
+        return 1
+    return -1 if 5.0 < found.scale * float(np.median(values)) < 15.0 else 1
+
+
+def _find_time(guesses: list[Guess]) -> list[Guess]:
+    """The first column whose values increase evenly is taken for the time."""
+    for i, guess in enumerate(guesses):
+        x = guess.column.values
+        dt = np.diff(x)
+        if len(dt) < 3 or guess.name or not np.isfinite(dt).all() or (dt <= 0).any():
+            continue
+        if np.quantile(dt, 0.9) < 1.5 * np.median(dt):
+            unit = _unit_by_size("t", "s", x)
+            new = Guess(guess.source, guess.column, "t", unit, 1, "it increases evenly")
+            return [*guesses[:i], new, *guesses[i + 1 :]]
+    return guesses
+
+
+def _fills(guesses: list[Guess]) -> list[float]:
+    found = {f[0] for g in guesses if g.name and (f := looks_filled(g.column.values))}
+    return sorted(v for v in found if abs(v) < HUGE)
+
+
+def _channel_lines(guesses: list[Guess]) -> list[str]:
+    order = list(CHANNELS)
+    matched = sorted((g for g in guesses if g.name), key=lambda g: order.index(g.name))
+    lines = []
+    if not any(g.name == "t" for g in matched):
+        lines.append('# t = {from = "?", unit = "s"}  # confirm: no time was found')
+    for g in matched:
+        sign = ", sign = -1" if g.sign < 0 else ""
+        entry = f"{g.name} = {{from = {_toml(g.source)}, unit = {_toml(g.unit)}{sign}}}"
+        lines.append(f"{entry}  # confirm: by {g.why}; {_span(g.column.values)}")
+    rest = [g for g in guesses if not g.name]
+    if rest:
+        lines.append("# Columns without a guess (from, values as recorded):")
+    for g in rest:
+        unit = f" [{g.unit}]" if g.unit else ""
+        why = f"  {g.why}" if g.why else ""
+        lines.append(
+            f"#   {_comment(_toml(g.source) + unit)}: {_span(g.column.values)}{_comment(why)}"
+        )
+    return lines
+
+
+def _maneuver_lines(log: str, guesses: list[Guess]) -> list[str]:
+    time = next((g for g in guesses if g.name == "t"), None)
+    if time is None:
+        return []
+    unit = find_unit(time.unit)
+    t = time.column.values[np.isfinite(time.column.values)]
+    if unit is None or len(t) < 2:
+        return []
+    start, end = float(t.min()) * unit.scale, float(t.max()) * unit.scale
+    stop = min(end, start + EXAMPLE_S)
+    return [
+        "",
+        f"# An example window; the log runs from {start:.10g} to {end:.10g} s.",
+        "[[maneuvers]]",
+        'id = "example"',
+        f"log = {_toml(log)}",
+        'kind = "3211"  # confirm',
+        f"start = {start:.10g}  # confirm",
+        f"end = {stop:.10g}  # confirm",
+        'aspect = "both"  # confirm: longitudinal, lateral or both',
+    ]
+
+
+def _models(names: set[str]) -> list[str]:
+    longitudinal = "1 + alpha + qhat" + (" + de" if "de" in names else "")
+    da, dr = (" + da" if "da" in names else ""), (" + dr" if "dr" in names else "")
+    return [
+        'CX = "1 + alpha + alpha^2"',
+        f'CZ = "{longitudinal}"',
+        f'Cm = "{longitudinal}"',
+        f'CY = "1 + beta + phat + rhat{dr}"',
+        f'Cl = "1 + beta + phat + rhat{da}{dr}"',
+        f'Cn = "1 + beta + phat + rhat{da}{dr}"',
+    ]
+
+
+def _span(values: Array) -> str:
+    good = values[np.isfinite(values)]
+    if len(good) == 0:
+        return "no number in it"
+    return f"{good.min():.4g} to {good.max():.4g}, median {np.median(good):.4g}"
+
+
+def _toml(value: int | str) -> str:
+    if isinstance(value, int):
+        return str(value)
+    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007F")
+
+
+def _comment(text: str) -> str:
+    return re.sub(r"[\x00-\x1f\x7f\x85\u2028\u2029]", " ", text)
+
+
+def _identifier(stem: str) -> str:
+    return re.sub(r"[^\w.+-]+", "_", stem).strip("_.+-")[:60] or "log"

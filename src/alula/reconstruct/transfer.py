@@ -1,0 +1,170 @@
+"""From the motion of the inertial sensor to the motion at the center of gravity.
+
+Velocity: v_G = v_S + w x r. Specific force: f_G = f_S + wdot x r + w x (w x r), with r from the
+sensor to the center of gravity (Dittrich 2016, Eq. (3.3), (3.4)). Air data follow from the air
+velocity at the center of gravity.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from alula.aircraft import Aircraft
+from alula.base.arrays import Array
+from alula.core import core
+from alula.flight import Flight, Motion
+from alula.reconstruct.differentiate import differentiate
+from alula.reconstruct.problem import Problem
+from alula.reconstruct.record import Record, channel_on
+from alula.reconstruct.unknowns import INERTIAL, WIND
+
+CONTROLS = ("de", "da", "dr", "df", "dt")
+
+
+class Transfer:
+    """Turns states of one record into Motion; what does not depend on the states is done once."""
+
+    def __init__(
+        self,
+        problem: Problem,
+        record: Record,
+        flight: Flight,
+        aircraft: Aircraft,
+        window_s: float,
+    ) -> None:
+        self.problem, self.record, self.window_s = problem, record, window_s
+        t = record.t[record.base]
+        fuel = _fuel(flight, t)
+        position = (
+            aircraft.reference_point[None, :]
+            if aircraft.mass is None
+            else aircraft.mass_properties(fuel if fuel is not None else np.zeros(len(t))).cg
+        )
+        self.arm = position - problem.position
+        self.still = not np.any(self.arm)
+        nothing = np.zeros(len(t))
+        self.template = Motion(
+            record.maneuver, t, *([nothing] * 18),
+            controls=controls_on(flight, aircraft, t),
+            thrust=_thrust(flight, aircraft, t),
+            fuel_used=fuel,
+            recorded=recorded_on(flight, t),
+        )  # fmt: skip
+        self.rho = channel_on(flight, "rho", t) if "rho" in flight else None
+
+    def motion(self, states: Array) -> Motion:
+        """Motion at the center of gravity from states (n, k) at the record's stamps."""
+        problem, base = self.problem, self.record.base
+        x = states[base]
+        fixed = {u.name: u.value for u in problem.fixed}
+
+        def unknown(name: str) -> Array:
+            column = problem.column(name)
+            return np.full(len(x), fixed.get(name, 0.0)) if column is None else x[:, column]
+
+        true = np.column_stack(
+            [
+                (self.record.inputs[base, i] - unknown(f"b_{n}")) / (1.0 + unknown(f"k_{n}"))
+                for i, n in enumerate(INERTIAL)
+            ]
+        )
+        f, rates = true[:, :3], true[:, 3:]
+        t = self.template.t
+        accelerations = np.column_stack(
+            [differentiate(t, rates[:, i], self.window_s).rates for i in range(3)]
+        )
+        phi, theta, psi = x[:, 4], x[:, 5], x[:, 6]
+        v = x[:, 1:4] - rotate(phi, theta, psi, np.column_stack([unknown(n) for n in WIND]))
+        h = x[:, 0]
+        if not self.still:
+            turn = np.cross(rates, self.arm)
+            v = v + turn
+            f = f + np.cross(accelerations, self.arm) + np.cross(rates, turn)
+            h = h - _down(phi, theta, self.arm)
+        u, side, w = v.T
+        V = np.sqrt(np.sum(v**2, axis=1))
+        return replace(
+            self.template,
+            V=V,
+            alpha=np.arctan2(w, u),
+            beta=np.arcsin(np.clip(side / V, -1.0, 1.0)),
+            p=rates[:, 0], q=rates[:, 1], r=rates[:, 2],
+            pdot=accelerations[:, 0], qdot=accelerations[:, 1], rdot=accelerations[:, 2],
+            ax=f[:, 0], ay=f[:, 1], az=f[:, 2],
+            phi=phi, theta=theta, psi=psi, h=h,
+            rho=standard_density(h) if self.rho is None else self.rho,
+        )  # fmt: skip
+
+
+def standard_density(h: Array) -> Array:
+    """Density of the 1976 standard atmosphere, kg/m3, at heights h (n,) m."""
+    return np.asarray(core.standard_atmosphere(np.ascontiguousarray(h, dtype=np.float64))["rho"])
+
+
+def rotate(phi: Array, theta: Array, psi: Array, v_E: Array) -> Array:
+    """v_B = R_BE v_E for each sample; v_E (n, 3), Euler angles 3-2-1."""
+    sp, cp, st, ct, sy, cy = (f(a) for a in (phi, theta, psi) for f in (np.sin, np.cos))
+    along, across = v_E[:, 0] * cy + v_E[:, 1] * sy, v_E[:, 1] * cy - v_E[:, 0] * sy
+    tilted = along * st + v_E[:, 2] * ct
+    return np.column_stack(
+        [along * ct - v_E[:, 2] * st, across * cp + tilted * sp, tilted * cp - across * sp]
+    )
+
+
+def _down(phi: Array, theta: Array, arm: Array) -> Array:
+    """How far the point at `arm` lies below the sensor, m."""
+    side = arm[:, 1] * np.sin(phi) + arm[:, 2] * np.cos(phi)
+    return np.asarray(side * np.cos(theta) - arm[:, 0] * np.sin(theta))
+
+
+def controls_on(flight: Flight, aircraft: Aircraft, t: Array) -> dict[str, Array]:
+    """The recorded controls at t, in Alula's senses."""
+    return {
+        name: aircraft.control_sign(name) * channel_on(flight, name, t)
+        for name in CONTROLS
+        if name in flight
+    }
+
+
+def recorded_on(flight: Flight, t: Array) -> dict[str, Array]:
+    """Coefficients and rates that the log itself holds, for identification from them."""
+    names = ("CX", "CY", "CZ", "Cl", "Cm", "Cn", "CD", "CL", "CT", "phat", "qhat", "rhat")
+    return {name: channel_on(flight, name, t) for name in names if name in flight}
+
+
+def _thrust(flight: Flight, aircraft: Aircraft, t: Array) -> Array | None:
+    """All engines' thrust, N; None where one of them is not known."""
+    total = np.zeros(len(t))
+    for engine in aircraft.engines:
+        if engine.channel is not None and engine.channel in flight:
+            total += channel_on(flight, engine.channel, t)
+        elif engine.thrust is not None:
+            total += engine.thrust
+        else:
+            return None
+    return total if aircraft.engines else None
+
+
+def engines_on(flight: Flight, aircraft: Aircraft, t: Array) -> dict[str, Array]:
+    """Each engine's thrust at t, N, by the engine's name; those not known are left out."""
+    out = {}
+    for engine in aircraft.engines:
+        if engine.channel is not None and engine.channel in flight:
+            out[engine.name] = channel_on(flight, engine.channel, t)
+        elif engine.thrust is not None:
+            out[engine.name] = np.full(len(t), engine.thrust)
+    return out
+
+
+def _fuel(flight: Flight, t: Array) -> Array | None:
+    """Fuel burned since the start of the flight, kg: the channel, or the sum of the tanks'."""
+    names = [n for n in flight.channels if n.startswith("fuel_used")]
+    if not names:
+        return None
+    if "fuel_used" in names:
+        names = ["fuel_used"]
+    return np.asarray(sum((channel_on(flight, n, t) for n in names), np.zeros(len(t))))
+
+

@@ -1,0 +1,232 @@
+"""The page as text: complete, closed to the outside, the same each time, honest."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import json
+import re
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from alula.base.messages import refuse, warn
+from alula.report import render
+from report.example import MANEUVERS, example
+
+LIMIT = 3_000_000  # bytes: what still goes through mail
+HOSTILE = ("<img src=x onerror=alert(1)>", "</script><script>alert(1)</script>", '"\u2028\u202e]]>')
+
+
+@pytest.fixture(scope="module")
+def text() -> str:
+    return render(example())
+
+
+def scripts(text: str) -> list[str]:
+    return re.findall(r"<script>(.*?)</script>", text, re.S)
+
+
+def test_same_input_gives_the_same_bytes(text: str) -> None:
+    assert render(example()) == text
+
+
+def test_policy_allows_exactly_the_scripts_and_style_inside(text: str) -> None:
+    policy = re.search(r'Content-Security-Policy" content="([^"]*)"', text)
+    assert policy is not None
+    inside = scripts(text) + re.findall(r"<style>(.*?)</style>", text, re.S)
+    wanted = {base64.b64encode(hashlib.sha256(s.encode()).digest()).decode() for s in inside}
+    assert set(re.findall(r"sha256-([^&']+)", policy[1])) == wanted
+    assert "default-src &#x27;none&#x27;" in policy[1]
+    assert "unsafe" not in policy[1]
+
+
+def test_nothing_is_asked_from_outside(text: str) -> None:
+    assert not re.search(r'(?:src|href)="(?!#)', text)
+    assert not re.search(r"@import|url\(", text)
+    assert " style=" not in text, "the policy forbids style attributes"
+
+
+@pytest.mark.parametrize("rate", [25.0, 100.0, 1000.0])
+def test_size_stays_under_the_limit(rate: float) -> None:
+    assert len(render(example(rate)).encode()) < LIMIT
+
+
+def test_all_samples_are_carried_where_they_fit(text: str) -> None:
+    assert "Drawn from" not in text
+    data = json.loads(re.search(r'id="alula-plots">(.*?)</script>', text, re.S)[1])  # type: ignore[index]
+    assert {f["t"]["n"] for f in data["figures"]} == {626}  # 25 s at 25 Hz, both ends
+
+
+def test_fewer_points_than_samples_are_announced_at_every_such_plot() -> None:
+    text = render(example(1000.0))
+    assert text.count("of 25001 samples") == text.count("data-plot=") > 0
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_text_of_a_log_stays_text(name: str) -> None:
+    report = example()
+    assert report.reconstruction is not None
+    assert report.identification is not None
+    maneuver = replace(MANEUVERS[0], id=name, kind=name, log=name, configuration={name: name})
+    segment = report.reconstruction.segments[0]
+    sensor = replace(segment.sensors[0], name=name, unit=name)
+    segment = replace(
+        segment,
+        maneuver=maneuver,
+        motion=replace(segment.motion, maneuver=maneuver, controls={name: segment.motion.V}),
+        sensors=(sensor,),
+        state_names=(name, *segment.state_names[1:]),
+        mismatch={name: 1.0},
+    )
+    parameter = replace(report.identification.parameters[0], name=name, coefficient=name, unit=name)
+    fit = replace(next(iter(report.identification.fits.values())), coefficient=name, formula=name)
+    series = replace(report.identification.series[0], coefficient=name, maneuver=name)
+    channel = replace(report.cards[0].channels[0], name=name, source=name, unit=name)
+    file = replace(report.cards[0].files[0], path=name)
+    hostile = replace(
+        report,
+        name=name,
+        path=name,
+        date=name,
+        aircraft={name: name},
+        cards=(replace(report.cards[0], log=name, channels=(channel,), files=(file,)),),
+        maneuvers=(maneuver,),
+        reconstruction=replace(report.reconstruction, segments=(segment,), status=name),
+        identification=replace(
+            report.identification,
+            parameters=(parameter, *report.identification.parameters[1:]),
+            fits={name: fit},
+            series=(series,),
+            status=name,
+        ),
+        messages=(warn(name, where=name, expected=name, found=name, do=name),),
+        provenance={name: {name: name}},
+    )
+    text = render(hostile)
+    assert name not in text
+    assert "<img" not in text
+    assert len(scripts(text)) == len(scripts(render(report)))
+    assert "\u2028" not in text
+    assert "\u202e" not in text
+
+
+def test_a_broken_encoding_does_not_stop_the_report() -> None:
+    render(example(name="log \udcff\x00 one")).encode()
+
+
+def test_held_out_maneuvers_are_labelled(text: str) -> None:
+    held = re.findall(r"<figcaption><strong>([^<]*)</strong> <span class=\"tag\">([^<]*)", text)
+    assert held == [(f"{c} · rudder", "held out: not used in the fit") for c in ("CY", "Cl")]
+    assert "no maneuver was held out" in text  # of CZ and Cm
+
+
+def test_what_is_not_identifiable_shows_no_value_and_its_combination(text: str) -> None:
+    row = re.search(r"<tr><th scope=\"row\"><code>Cm_qhat</code>.*?</tr>", text)
+    assert row is not None
+    assert "not identifiable" in row[0]
+    assert "Cm_qhat + 2.1 Cm_alphadot" in row[0]
+    assert "±" not in row[0]
+    assert "nan" not in row[0].lower()
+
+
+def test_verdict_follows_the_worst_finding() -> None:
+    def verdict(text: str) -> str:
+        found = re.search(r'class="verdict-box (\w+)"', text)
+        assert found is not None
+        return found[1]
+
+    report = example()
+    assert report.identification is not None
+    assert report.reconstruction is not None
+    assert verdict(render(report)) == "bad"
+    good = [replace(p, verdict="ok") for p in report.identification.parameters]
+    fine = replace(report, identification=replace(report.identification, parameters=tuple(good)))
+    assert verdict(render(fine)) == "good"
+    good[2] = replace(good[2], verdict="weak")
+    weak = replace(report, identification=replace(report.identification, parameters=tuple(good)))
+    assert verdict(render(weak)) == "caution"
+    failed = replace(fine, reconstruction=replace(report.reconstruction, converged=False))
+    assert verdict(render(failed)) == "bad"
+    error = refuse("x", where="x", expected="x", found="x", do="x").messages
+    assert verdict(render(replace(fine, messages=error))) == "bad"
+
+
+def test_angles_are_in_degrees_and_derivatives_per_radian(text: str) -> None:
+    assert "−0.246 ± 0.018" in text  # b_alpha, -0.0043 ± 0.00031 rad
+    assert re.search(r"<code>Cm_alpha</code>.*?−0.950 ± 0.020.*?1/rad", text)
+    before, _, _ = text.partition('id="messages"')  # a message may speak of the log's own unit
+    assert ">rad<" not in before
+
+
+def test_stages_that_were_not_run_are_left_out() -> None:
+    text = render(example(reconstruction=None, identification=None, cards=(), maneuvers=()))
+    assert 'id="provenance"' in text
+    assert 'id="parameters"' not in text
+    assert "No model was identified" in text
+
+
+def test_a_method_without_innovations_shows_residuals() -> None:
+    report = example()
+    assert report.reconstruction is not None
+    segment = report.reconstruction.segments[0]
+    nothing = np.full(len(segment.motion.t), np.nan)
+    sensors = tuple(
+        replace(s, innovation=nothing, innovation_se=nothing, whiteness=np.nan)
+        for s in segment.sensors
+    )
+    changed = replace(
+        report.reconstruction,
+        method="ml",
+        segments=(replace(segment, sensors=sensors),),
+        nis_mean=np.nan,
+        nis_interval=(np.nan, np.nan),
+    )
+    text = render(replace(report, reconstruction=changed))
+    assert "This method has no innovations" in text
+    assert "measured − fitted (m/s)" in text
+    assert "innovation (m/s)" not in text
+    assert "NaN" not in re.sub(r"<script.*?</script>", "", text, flags=re.S)
+
+
+def test_every_message_is_there_once(text: str) -> None:
+    for message in example().all_messages():
+        assert text.count(f"<code>{message.code}</code>") == 1
+
+
+def test_tables_have_captions_and_headings_do_not_jump(text: str) -> None:
+    assert text.count("<table") == text.count("<caption")
+    levels = [int(n) for n in re.findall(r"<h([1-6])", text)]
+    assert levels[0] == 1
+    assert all(b <= a + 1 for a, b in pairwise(levels))
+
+
+def _luminance(color: str) -> float:
+    """Relative luminance by WCAG 2.1."""
+    code = color.lstrip("#")
+    code = code if len(code) == 6 else "".join(2 * c for c in code)
+    parts = [int(code[k : k + 2], 16) / 255 for k in (0, 2, 4)]
+    linear = [c / 12.92 if c <= 0.03928 else ((c + 0.055) / 1.055) ** 2.4 for c in parts]
+    return float(np.dot(linear, [0.2126, 0.7152, 0.0722]))
+
+
+def _contrast(a: str, b: str) -> float:
+    high, low = sorted((_luminance(a), _luminance(b)), reverse=True)
+    return (high + 0.05) / (low + 0.05)
+
+
+@pytest.mark.parametrize("start", [":root{", ":root[data-theme=dark]{"])
+def test_contrast_of_words_and_curves(text: str, start: str) -> None:
+    block = text.partition(start)[2].partition("}")[0]
+    colors = dict(re.findall(r"--([\w-]+):(#[0-9a-f]{3,6});", block))
+    for name in ("ink", "muted", "link", "good", "caution", "bad", "plot-ink", "plot-muted"):
+        for ground in ("paper", "soft"):  # 4.5 and 3: WCAG 2.1, 1.4.3 and 1.4.11, level AA
+            assert _contrast(colors[name], colors[ground]) >= 4.5, (name, ground)
+    for name in ("measured", "model", "residual"):
+        assert _contrast(colors[f"plot-{name}"], colors["plot-paper"]) >= 3, name
+    for step in range(11):
+        for sign in "pm":
+            word = colors["over"] if step >= 7 else colors["ink"]
+            assert _contrast(word, colors[f"{sign}{step}"]) >= 4.5, (sign, step)
