@@ -8,7 +8,6 @@ import pytest
 
 from alula.model import Reference, aero_model
 from alula.simulate import Airframe, fly, initial_state
-from alula.simulate.fly import earth_to_body
 from data import data
 
 NOTHING = aero_model("no aerodynamics", {}, {}, Reference(1.0, 1.0, 1.0))
@@ -101,12 +100,6 @@ def test_thrust_off_the_center_of_gravity_pitches() -> None:
     # 40 N at 0.2 m above: M = z Fx = -8 N m
     assert m.qdot[0] == pytest.approx(-8.0 / 80.0, rel=1e-12)
     assert m.ax[0] == pytest.approx(0.4, rel=1e-12)
-
-
-def test_rotation_matrices_are_rotations() -> None:
-    q = np.random.default_rng(3).standard_normal((50, 4))
-    R = earth_to_body(q)
-    np.testing.assert_allclose(R @ R.transpose(0, 2, 1), np.tile(np.eye(3), (50, 1, 1)), atol=1e-14)
 
 
 def test_tumbling_brick_with_damping_slows_as_nasa_says() -> None:
