@@ -122,3 +122,11 @@ def test_no_maneuver_to_learn_from():
 
 def test_no_model_at_all():
     refused("no_model", [maneuver()], {})
+
+
+def test_gap_within_a_maneuver_is_said():
+    m = maneuver()
+    t = np.where(np.arange(len(m.t)) > 300, m.t + 2.0, m.t)
+    result = identify_equation_error([replace(m, t=t)], {"Cm": "1 + alpha + qhat + de"})
+    assert [x.code for x in result.messages] == ["uneven_time"]
+    assert "2.02 s" in result.messages[0].found

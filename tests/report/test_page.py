@@ -54,6 +54,27 @@ def test_size_stays_under_the_limit(rate: float) -> None:
     assert len(render(example(rate)).encode()) < LIMIT
 
 
+def test_size_stays_under_the_limit_with_many_maneuvers() -> None:
+    report = example()
+    assert report.reconstruction is not None
+    many = replace(report.reconstruction, segments=report.reconstruction.segments * 8)
+    assert len(render(replace(report, reconstruction=many)).encode()) < LIMIT
+
+
+def test_a_sensor_without_samples_is_named() -> None:
+    report = example()
+    assert report.reconstruction is not None
+    first = report.reconstruction.segments[0]
+    none = np.empty(0)
+    sensor = replace(
+        first.sensors[0], t=none, measured=none, fitted=none, innovation=none, innovation_se=none,
+        whiteness=np.nan,
+    )  # fmt: skip
+    segments = (replace(first, sensors=(sensor,)),)
+    text = render(replace(report, reconstruction=replace(report.reconstruction, segments=segments)))
+    assert "V, true airspeed: no sample, nothing to draw." in text
+
+
 def test_all_samples_are_carried_where_they_fit(text: str) -> None:
     assert "Drawn from" not in text
     data = json.loads(re.search(r'id="alula-plots">(.*?)</script>', text, re.S)[1])  # type: ignore[index]

@@ -11,7 +11,9 @@ from alula.base.arrays import Array
 from alula.flight.flight import Channel, Flight
 from alula.flight.maneuver import Maneuver
 
-FACTOR = 3.0  # one or two lost samples of a regular recording are bridged by its neighbours
+# One or two lost samples of a regular recording are bridged by their neighbors; the hundredth is
+# for the rounding of the stamps.
+FACTOR = 3.0 * 1.01
 
 
 @dataclass(frozen=True)
@@ -29,7 +31,7 @@ class Gap:
 
 
 def gaps_of(t: Array) -> tuple[Gap, ...]:
-    """The gaps of increasing time stamps t (n,): intervals over 3 times the median."""
+    """The gaps of increasing time stamps t (n,) s: intervals over 3 times the median."""
     if len(t) < 3:
         return ()
     dt = np.diff(t)

@@ -9,7 +9,9 @@ from alula.identify.coefficients import (
     coefficients_from_motion,
 )
 from alula.identify.equation_error import identify_equation_error
+from alula.identify.model import identified_model
 from alula.identify.result import Fit, Identification, Parameter, Series, Tie
+from alula.identify.state_space import StateSpace, identify_state_space, state_derivatives
 
 __all__ = [
     "CoefficientData",
@@ -19,9 +21,13 @@ __all__ = [
     "Perturbed",
     "Reference",
     "Series",
+    "StateSpace",
     "Thrust",
     "Tie",
     "coefficients_as_recorded",
     "coefficients_from_motion",
+    "identified_model",
     "identify_equation_error",
+    "identify_state_space",
+    "state_derivatives",
 ]

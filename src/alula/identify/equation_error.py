@@ -8,38 +8,20 @@ added.
 
 from __future__ import annotations
 
-import importlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from alula.base.arrays import Array, frozen
-from alula.base.messages import Message, refuse
+from alula.base.messages import Message, refuse, warn
 from alula.identify.coefficients import CoefficientData
 from alula.identify.regression import Block, Regression, Weighting, regress
 from alula.identify.result import Fit, Identification, Parameter, Series
 from alula.identify.typical import constant_name
 from alula.identify.verdict import assess
-
-Design = Callable[[str, str, Mapping[str, Array]], tuple[Sequence[str], Array]]
+from alula.model import reference_scales, regressors
 
 LONGITUDINAL = frozenset({"CX", "CZ", "CD", "CL", "Cm"})
-
-
-def model_design(
-    coefficient: str, formula: str, variables: Mapping[str, Array]
-) -> tuple[Sequence[str], Array]:
-    """Names and regressors (n, k) of a formula, by the model grammar."""
-    regressors: Design = importlib.import_module("alula.model").regressors
-    return regressors(coefficient, formula, variables)
-
-
-def model_scales(coefficient: str, formula: str) -> dict[str, float]:
-    """Standard errors that are good enough, where the formula states them (`beta~0.01`)."""
-    scales: Callable[[str, str], dict[str, float]] = importlib.import_module(
-        "alula.model"
-    ).reference_scales
-    return scales(coefficient, formula)
 
 
 def identify_equation_error(
@@ -74,7 +56,7 @@ def identify_equation_error(
     fits: dict[str, Fit] = {}
     parameters: list[Parameter] = []
     series: list[Series] = []
-    messages: list[Message] = [m for item in data for m in item.messages]
+    messages: list[Message] = [m for item in data for m in (*item.messages, *_uneven(item))]
     parts: list[Array] = []
     changes: list[dict[str, Array]] = []
     for coefficient, formula in models.items():
@@ -87,7 +69,7 @@ def identify_equation_error(
             for source in dict.fromkeys(p.source for item in learn for p in item.perturbed)
         }
         added = sum((np.outer(d, d) for d in change.values()), np.zeros((len(task.names),) * 2))
-        enough = {**model_scales(coefficient, formula), **(scales or {})}
+        enough = {**reference_scales(coefficient, formula), **(scales or {})}
         assessed, remarks = assess(coefficient, fit, added, enough, truth or {})
         parameters += assessed
         messages += remarks
@@ -119,7 +101,7 @@ class _Task:
         common: bool,
     ) -> None:
         self.coefficient, self.formula, self.learn = coefficient, formula, learn
-        terms, _ = model_design(coefficient, formula, learn[0].variables)
+        terms, _ = regressors(coefficient, formula, learn[0].variables)
         self.terms = tuple(terms)
         self.constant = constant_name(coefficient)
         self.split = self.constant in self.terms and len(learn) > 1 and not common
@@ -129,7 +111,7 @@ class _Task:
 
     def terms_of(self, variables: Mapping[str, Array]) -> Array:
         """The formula's regressors (n, k) in the order of `terms`."""
-        names, matrix = model_design(self.coefficient, self.formula, variables)
+        names, matrix = regressors(self.coefficient, self.formula, variables)
         assert tuple(names) == self.terms  # a formula's terms do not depend on the data
         return matrix
 
@@ -174,6 +156,25 @@ def _serving(data: Sequence[CoefficientData], coefficient: str) -> list[Coeffici
                 do="Map it in [channels], or model one of those found.",
             )
     return serving
+
+
+def _uneven(item: CoefficientData) -> list[Message]:
+    """A warning where samples are not evenly spaced, as the autocorrelation takes them to be."""
+    steps = np.diff(item.t)
+    usual = float(np.median(steps)) if len(steps) else 0.0
+    odd = int(np.sum(np.abs(steps - usual) > 0.5 * abs(usual)))
+    if not odd:
+        return []
+    return [
+        warn(
+            "uneven_time",
+            where=f"maneuver {item.maneuver.id}",
+            expected=f"samples every {usual:.4g} s",
+            found=f"{odd} of {len(steps)} steps off by more than half, the longest "
+            f"{steps.max():.4g} s",
+            do="Split the maneuver there; the coloured standard errors take samples as even.",
+        )
+    ]
 
 
 def _series(task: _Task, fit: Regression, serving: Sequence[CoefficientData]) -> list[Series]:

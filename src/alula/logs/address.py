@@ -111,9 +111,10 @@ def find(log: LogSpec, tables: Tables, source: int | str, column: int | None, wh
 
 def _named(log: LogSpec, tables: Tables, source: str) -> Iterator[Column]:
     """Columns of that name; a matrix of that name has index -1. Tables before their columns."""
-    names = [source] + ([f"{log.variable}.{source}"] if log.variable else [])
-    names = [n.replace("/", ".") if tables.format == "mat" else n for n in names]
-    found = [t for t in tables.tables if t.name and t.name in names]
+    found: list[Table] = []
+    for name in [f"{log.variable}.{source}"] * bool(log.variable) + [source]:
+        wanted = name.replace("/", ".") if tables.format == "mat" else name
+        found = found or [t for t in tables.tables if t.name and t.name == wanted]
     for table in found:
         yield Column(table, 0 if len(table.data) == 1 else -1)
     if not found:

@@ -48,6 +48,7 @@ class Guess:
     unit: str
     sign: int
     why: str
+    offset: float = 0.0  # in the source's unit
 
 
 def new_project(log_path: Path | str, folder: Path | str | None = None) -> str:
@@ -153,13 +154,32 @@ def _guess(source: int | str, column: Column, label: str) -> Guess:
         found = find_unit(column.unit)
         if found is None or found.si not in (known.unit, *known.also):
             return Guess(source, column, "", column.unit, 1, f"'{name}'? but in {column.unit}")
-        return Guess(
-            source, column, name, column.unit, _sign(name, column.unit, values), "its name and unit"
-        )
-    if unit:
-        return Guess(source, column, name, unit, _sign(name, unit, values), "its name")
-    unit = _unit_by_size(name, known.unit, values)
-    return Guess(source, column, name, unit, _sign(name, unit, values), BY_SIZE)
+        unit, why = column.unit, "its name and unit"
+    else:
+        why = "its name" if unit else BY_SIZE
+        unit = unit or _unit_by_size(name, known.unit, values)
+    if name != "az":
+        return Guess(source, column, name, unit, 1, why)
+    unit, sign, offset = _vertical(label, unit, values, why == BY_SIZE)
+    return Guess(source, column, name, unit, sign, why, offset)
+
+
+def _vertical(label: str, unit: str, values: Array, by_size: bool) -> tuple[str, int, float]:
+    """Unit, sign and offset of az: it may point up and may have gravity taken out.
+
+    'Normal acceleration' is positive up by custom, so that 1 g taken out is put back before the
+    sign is turned; another name is taken to point down.
+    """
+    found = find_unit(unit)
+    assert found is not None
+    middle = found.scale * float(np.median(values))
+    if abs(middle) < 0.3:
+        if by_size:
+            unit = "g" if float(np.quantile(np.abs(values), 0.999)) < 2.0 else "m/s2"
+        one = 1.0 if unit == "g" else 9.81
+        up = re.search("norm|nz", label.lower()) is not None
+        return unit, (-1 if up else 1), (one if up else -one)
+    return unit, (-1 if 5.0 < middle < 15.0 else 1), 0.0
 
 
 def _unit_by_size(name: str, si: str, values: Array) -> str:
@@ -175,13 +195,6 @@ def _unit_by_size(name: str, si: str, values: Array) -> str:
             if doubt is None or doubt.code in ("axes_z_up", "gravity_removed"):
                 return unit
     return si
-
-
-def _sign(name: str, unit: str, values: Array) -> int:
-    found = find_unit(unit)
-    if name != "az" or found is None:
-        return 1
-    return -1 if 5.0 < found.scale * float(np.median(values)) < 15.0 else 1
 
 
 def _find_time(guesses: list[Guess]) -> list[Guess]:
@@ -210,7 +223,8 @@ def _channel_lines(guesses: list[Guess]) -> list[str]:
     if not any(g.name == "t" for g in matched):
         lines.append('# t = {from = "?", unit = "s"}  # confirm: no time was found')
     for g in matched:
-        sign = ", sign = -1" if g.sign < 0 else ""
+        sign = f", offset = {g.offset:g}" if g.offset else ""
+        sign += ", sign = -1" if g.sign < 0 else ""
         entry = f"{g.name} = {{from = {_toml(g.source)}, unit = {_toml(g.unit)}{sign}}}"
         lines.append(f"{entry}  # confirm: by {g.why}; {_span(g.column.values)}")
     rest = [g for g in guesses if not g.name]

@@ -146,6 +146,18 @@ class LogMapping:
         if spec.table is not None:
             total = self._calibrate(name, spec.table, total)
         values = unit.scale * (spec.sign * total) + unit.offset
+        infinite = np.isinf(values)
+        if infinite.any():
+            values = np.where(infinite, np.nan, values)
+            self.messages.append(
+                warn(
+                    "not_finite",
+                    where=self._where(name),
+                    expected="numbers that can be converted",
+                    found=f"{int(infinite.sum())} too large, which became NaN",
+                    do="Check the source; no sensor reads that.",
+                )
+            )
         words = _words(spec, columns, weights)
         plain = f"{columns[0].label} in {spec.unit or columns[0].unit}"
         if unit != Unit(1.0, 0.0, unit.si) or words not in (plain, columns[0].label):

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -179,7 +179,9 @@ def check(
             confirmed = specs[angle].confirmed or specs[rate].confirmed
             told = _agree(log, channels[angle], channels[rate])
             if told is not None:
-                (messages if confirmed or told.level == "warning" else problems).append(told)
+                if confirmed:
+                    told = replace(told, level="warning")
+                (problems if told.level == "error" else messages).append(told)
     if problems:
         raise BadInput(*problems)
     return messages
@@ -235,7 +237,7 @@ def _times(
 
 
 def _agree(log: LogSpec, angle: Channel, rate: Channel) -> Message | None:
-    """Compare the changes of an attitude angle with its rate integrated, over a second each.
+    """Compare the changes of an attitude angle with its rate integrated, over half a second each.
 
     For moderate attitudes d(phi)/dt is about p and d(theta)/dt about q; a slope of 57 or 1/57 is
     degrees taken for radians, a negative one a sign.
@@ -245,7 +247,7 @@ def _agree(log: LogSpec, angle: Channel, rate: Channel) -> Message | None:
         return None
     t, x = rate.t[r], rate.values[r]
     integral = np.concatenate(([0.0], np.cumsum(0.5 * (x[1:] + x[:-1]) * np.diff(t))))
-    grid = np.arange(max(t[0], angle.t[a][0]), min(t[-1], angle.t[a][-1]), 1.0)
+    grid = np.arange(max(t[0], angle.t[a][0]), min(t[-1], angle.t[a][-1]), 0.5)
     if not 8 <= len(grid) <= 1_000_000:
         return None
     turned = np.diff(np.interp(grid, t, integral))

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
+import numpy as np
+
 from alula.base.files import sha256
 from alula.base.messages import Message, refuse
 from alula.base.project import ChannelSpec, LogSpec, Project
@@ -43,9 +45,10 @@ def read(log: LogSpec, channels: Mapping[str, ChannelSpec] | None = None) -> Fli
         )
     tables, messages = read_tables(log)
     mapping = LogMapping(log, specs, tables)
-    found = mapping.channels()
-    flight_messages = [*messages, *tables.messages, *mapping.messages]
-    flight_messages += check(log, specs, found)
+    with np.errstate(all="ignore"):  # absurd numbers overflow; what is infinite is counted
+        found = mapping.channels()
+        flight_messages = [*messages, *tables.messages, *mapping.messages]
+        flight_messages += check(log, specs, found)
     decoded = sum(mapping.used.values())
     source = SourceFile(
         path=str(log.path),

@@ -19,7 +19,7 @@ WORDS: dict[str, str] = {
     "pdot": "pdot rollacceleration rollacc dpdt",
     "qdot": "qdot pitchacceleration pitchacc dqdt",
     "rdot": "rdot yawacceleration yawacc drdt",
-    "phi": "phi roll bank bankangle rollangle phideg eulerroll rollattitude eulerangleroll",
+    "phi": "phi roll bank bankangle rollangle eulerroll rollattitude eulerangleroll",
     "theta": "theta the pitch pitchangle pitchattitude eulerpitch euleranglepitch eulertheta",
     "psi": "psi yaw heading hdg yawangle trueheading headingtrue euleryaw headingangle"
     " eulerangleyaw",
@@ -29,7 +29,7 @@ WORDS: dict[str, str] = {
     "V_ias": "ias vias indicatedairspeed kias airspeedindicated",
     "mach": "mach ma machnumber mac",
     "qbar": "qbar dynamicpressure qc qinf pdyn dynpressure qd impactpressure",
-    "alpha": "alpha aoa angleofattack alcg alp alphavane vaneaoa attack al alphadeg alphaboom",
+    "alpha": "alpha aoa angleofattack alcg alp alphavane vaneaoa attack al alphaboom",
     "beta": "beta aos sideslip angleofsideslip becg betavane sideslipangle ss ssa",
     "h": "h alt altitude baroalt pressurealtitude hp pressalt baroaltitude altitudemsl height"
     " altbaro",
@@ -49,8 +49,8 @@ WORDS: dict[str, str] = {
     " ambienttemperature",
     "temperature_total": "tat totaltemperature totalairtemperature",
     "pressure": "pressure staticpressure ps pstatic baropressure baro press ambientpressure",
-    "de": "de elevator elev deltae elevatorposition elevatordeflection elevatordeg elevatorangle",
-    "da": "da aileron ail deltaa aileronposition ailerondeflection ailerondeg",
+    "de": "de elevator elev deltae elevatorposition elevatordeflection elevatorangle",
+    "da": "da aileron ail deltaa aileronposition ailerondeflection",
     "dr": "dr rudder rud deltar rudderposition rudderdeflection rudderdeg",
     "df": "df flap flaps deltaf flapposition flapangle",
     "da_left": "aileronleft leftaileron daleft dal ailleft",

@@ -48,9 +48,10 @@ class Text:
         if self.encoding in ("utf-8", "ascii"):
             return int((self.original_starts[lines + 1] - self.original_starts[lines]).sum())
         s = self.original_starts
-        return sum(
+        used = sum(
             len(self.original[s[i] : s[i + 1]].decode().encode(self.encoding)) for i in lines
         )
+        return min(used, self.size)  # encodings with a mark in each piece would count it twice
 
     def with_data(self, data: bytes) -> Text:
         """The same lines with other text in them."""
@@ -60,7 +61,9 @@ class Text:
 def load(log: LogSpec) -> Text:
     """Read and decode a text file; raises BadInput for a wrong encoding or binary content."""
     raw = log.path.read_bytes()
-    encoding, bom = (log.encoding, 0) if log.encoding else _guess(raw)
+    encoding, bom = _guess(raw)
+    if log.encoding and not encoding.startswith(log.encoding.lower().removesuffix("-sig")):
+        encoding, bom = log.encoding, 0
     messages = []
     try:
         body = raw[bom:]
@@ -75,8 +78,16 @@ def load(log: LogSpec) -> Text:
             found=str(error),
             do="Set 'encoding' of this log, such as 'utf-8', 'utf-16' or 'latin-1'.",
         ) from None
-    if b"\0" in data[:4096] or b"\0" in data:
+    if b"\0" in data:
         raise wrong_type(log.path, log.format, "binary data (there are NUL bytes in it)")
+    if not data.strip():
+        raise refuse(
+            "empty_file",
+            where=str(log.path),
+            expected="a log with samples",
+            found=f"{len(raw)} bytes without a line of text",
+            do="Copy the log again from where it was recorded.",
+        )
     if encoding != "utf-8" and not log.encoding:
         messages.append(
             note(
@@ -90,8 +101,7 @@ def load(log: LogSpec) -> Text:
     if b"\n" not in data:
         data = data.replace(b"\r", b"\n")
     starts = _line_starts(data)
-    short = encoding.removesuffix("-sig")
-    return Text(log.path, data, starts, short, len(raw), data, starts, tuple(messages))
+    return Text(log.path, data, starts, encoding, len(raw), data, starts, tuple(messages))
 
 
 def _guess(raw: bytes) -> tuple[str, int]:

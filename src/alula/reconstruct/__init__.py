@@ -1,1 +1,16 @@
+"""Flight path reconstruction: what the aircraft really did, with the sensors' errors estimated."""
 
+from alula.reconstruct.differentiate import Derivative, differentiate
+from alula.reconstruct.reconstruct import METHODS, reconstruct
+from alula.reconstruct.result import Constant, Reconstruction, Segment, SensorFit
+
+__all__ = [
+    "METHODS",
+    "Constant",
+    "Derivative",
+    "Reconstruction",
+    "Segment",
+    "SensorFit",
+    "differentiate",
+    "reconstruct",
+]

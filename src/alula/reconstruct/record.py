@@ -97,17 +97,17 @@ def _samples(flight: Flight, sensor: Sensor, maneuver: Maneuver) -> tuple[Array,
     channel = flight[sensor.channel]
     if len(channel.t) == 1:  # a constant is not a measurement
         return np.empty(0), np.empty(0)
-    use = (
-        (channel.t >= maneuver.start) & (channel.t <= maneuver.end) & np.isfinite(channel.values)
-    )
+    use = (channel.t >= maneuver.start) & (channel.t <= maneuver.end) & np.isfinite(channel.values)
     values = channel.values[use]
     if sensor.channel.startswith(("lat", "lon")) and len(values):
         e2 = 2.0 * _EARTH_F - _EARTH_F**2
         latitude = flight[sensor.channel.replace("lon", "lat")]
         at = np.interp(channel.t[use][0], latitude.t, latitude.values)
-        h = float(np.interp(channel.t[use][0], flight["h"].t, flight["h"].values)) if (
-            "h" in flight
-        ) else 0.0
+        h = (
+            float(np.interp(channel.t[use][0], flight["h"].t, flight["h"].values))
+            if ("h" in flight)
+            else 0.0
+        )
         w = np.sqrt(1.0 - e2 * np.sin(at) ** 2)
         meridian, prime = _EARTH_A * (1.0 - e2) / w**3, _EARTH_A / w
         radius = meridian + h if sensor.kind == "north" else (prime + h) * np.cos(at)

@@ -7,8 +7,6 @@ velocity at the center of gravity.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from alula.aircraft import Aircraft
@@ -36,7 +34,7 @@ class Transfer:
     ) -> None:
         self.problem, self.record, self.window_s = problem, record, window_s
         t = record.t[record.base]
-        fuel = _fuel(flight, t)
+        fuel = fuel_on(flight, t)
         position = (
             aircraft.reference_point[None, :]
             if aircraft.mass is None
@@ -44,14 +42,11 @@ class Transfer:
         )
         self.arm = position - problem.position
         self.still = not np.any(self.arm)
-        nothing = np.zeros(len(t))
-        self.template = Motion(
-            record.maneuver, t, *([nothing] * 18),
-            controls=controls_on(flight, aircraft, t),
-            thrust=_thrust(flight, aircraft, t),
-            fuel_used=fuel,
-            recorded=recorded_on(flight, t),
-        )  # fmt: skip
+        self.t, self.maneuver = t, record.maneuver
+        self.controls = controls_on(flight, aircraft, t)
+        self.thrust = thrust_on(flight, aircraft, t)
+        self.fuel_used = fuel
+        self.recorded = recorded_on(flight, t)
         self.rho = channel_on(flight, "rho", t) if "rho" in flight else None
 
     def motion(self, states: Array) -> Motion:
@@ -71,7 +66,7 @@ class Transfer:
             ]
         )
         f, rates = true[:, :3], true[:, 3:]
-        t = self.template.t
+        t = self.t
         accelerations = np.column_stack(
             [differentiate(t, rates[:, i], self.window_s).rates for i in range(3)]
         )
@@ -85,8 +80,9 @@ class Transfer:
             h = h - _down(phi, theta, self.arm)
         u, side, w = v.T
         V = np.sqrt(np.sum(v**2, axis=1))
-        return replace(
-            self.template,
+        return Motion(
+            maneuver=self.maneuver,
+            t=t,
             V=V,
             alpha=np.arctan2(w, u),
             beta=np.arcsin(np.clip(side / V, -1.0, 1.0)),
@@ -95,12 +91,16 @@ class Transfer:
             ax=f[:, 0], ay=f[:, 1], az=f[:, 2],
             phi=phi, theta=theta, psi=psi, h=h,
             rho=standard_density(h) if self.rho is None else self.rho,
+            controls=self.controls, thrust=self.thrust, fuel_used=self.fuel_used,
+            recorded=self.recorded,
         )  # fmt: skip
 
 
 def standard_density(h: Array) -> Array:
     """Density of the 1976 standard atmosphere, kg/m3, at heights h (n,) m."""
-    return np.asarray(core.standard_atmosphere(np.ascontiguousarray(h, dtype=np.float64))["rho"])
+    out = np.empty((len(h), 4))
+    core.standard_atmosphere(np.ascontiguousarray(h, dtype=np.float64), out)
+    return out[:, 2].copy()
 
 
 def rotate(phi: Array, theta: Array, psi: Array, v_E: Array) -> Array:
@@ -134,7 +134,7 @@ def recorded_on(flight: Flight, t: Array) -> dict[str, Array]:
     return {name: channel_on(flight, name, t) for name in names if name in flight}
 
 
-def _thrust(flight: Flight, aircraft: Aircraft, t: Array) -> Array | None:
+def thrust_on(flight: Flight, aircraft: Aircraft, t: Array) -> Array | None:
     """All engines' thrust, N; None where one of them is not known."""
     total = np.zeros(len(t))
     for engine in aircraft.engines:
@@ -158,7 +158,7 @@ def engines_on(flight: Flight, aircraft: Aircraft, t: Array) -> dict[str, Array]
     return out
 
 
-def _fuel(flight: Flight, t: Array) -> Array | None:
+def fuel_on(flight: Flight, t: Array) -> Array | None:
     """Fuel burned since the start of the flight, kg: the channel, or the sum of the tanks'."""
     names = [n for n in flight.channels if n.startswith("fuel_used")]
     if not names:
@@ -166,5 +166,3 @@ def _fuel(flight: Flight, t: Array) -> Array | None:
     if "fuel_used" in names:
         names = ["fuel_used"]
     return np.asarray(sum((channel_on(flight, n, t) for n in names), np.zeros(len(t))))
-
-

@@ -69,7 +69,7 @@ def choose_unknowns(
     out = []
     for name, unit in units.items():
         spec = specs.get(name)
-        default = name.startswith("b_") and name in COMMON or (name in WIND and windy)
+        default = (name.startswith("b_") and name in COMMON) or (name in WIND and windy)
         free = default if spec is None else spec.state != "off"
         spec = spec or UnknownSpec()
         prior = _PRIOR_WIND if name in WIND else _PRIOR_SCALE if unit == "1" else _PRIOR[unit]
@@ -95,7 +95,7 @@ def _walk(name: str, spec: UnknownSpec) -> float:
             "missing_walk",
             where=f"reconstruct.unknowns.{name}",
             expected="'walk', the standard deviation gained in one second",
-            found="state = \"walk\" without it",
-            do="Add for example walk = 1e-4, or take state = \"constant\".",
+            found='state = "walk" without it',
+            do='Add for example walk = 1e-4, or take state = "constant".',
         )
     return spec.in_si(spec.walk)

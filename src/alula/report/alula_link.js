@@ -1,6 +1,26 @@
 "use strict";
-/* What plots share and how a hand moves them: the time window, the cursor, pointer and keys. */
+/* What plots share and how a hand moves them: the time window, the cursor, pointer and keys;
+   and the queue in which changed plots are drawn. */
 const AlulaLink = (() => {
+  /* Plots in view are drawn in the next frame, the others when there is time. */
+  const waiting = new Set();
+  let asked = false;
+  function soon(plot) {
+    waiting.add(plot);
+    if (!asked) { asked = true; requestAnimationFrame(drawWaiting); }
+  }
+  function drawWaiting() {
+    const until = performance.now() + 30;
+    for (const plot of waiting) if (plot.inView) plot.draw();
+    for (const plot of waiting) {
+      if (performance.now() > until) break;
+      plot.draw();
+    }
+    asked = waiting.size > 0;
+    if (asked) requestAnimationFrame(drawWaiting);
+  }
+  function drawn(plot) { waiting.delete(plot); }
+
   /* The time window and the cursor that several plots share. */
   class Link {
     constructor() {
@@ -96,5 +116,5 @@ const AlulaLink = (() => {
     }
   }
 
-  return { Link, listen };
+  return { Link, listen, soon, drawn };
 })();

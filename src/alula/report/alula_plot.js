@@ -10,26 +10,9 @@
    `y`, `half` and `center` are Float32Arrays (center may be null); `host` holds a canvas. */
 const AlulaPlot = (() => {
   const { Samples, ticks, format, readable, superscript } = AlulaSeries;
+  const { soon, drawn } = AlulaLink;
   const LEFT = 54, RIGHT = 10, ROW = 16, FOOT = 34, GAP = 8;
   const FONT = "11px system-ui, -apple-system, 'Segoe UI', Roboto, 'DejaVu Sans', sans-serif";
-
-  /* Plots in view are drawn in the next frame, the others when there is time. */
-  const waiting = new Set();
-  let asked = false;
-  function soon(plot) {
-    waiting.add(plot);
-    if (!asked) { asked = true; requestAnimationFrame(drawWaiting); }
-  }
-  function drawWaiting() {
-    const until = performance.now() + 30;
-    for (const plot of waiting) if (plot.inView) plot.draw();
-    for (const plot of waiting) {
-      if (performance.now() > until) break;
-      plot.draw();
-    }
-    asked = waiting.size > 0;
-    if (asked) requestAnimationFrame(drawWaiting);
-  }
 
   class Plot {
     constructor(host, spec, times, link) {
@@ -64,7 +47,7 @@ const AlulaPlot = (() => {
     }
 
     draw() {
-      waiting.delete(this);
+      drawn(this);
       const width = this.fixed ? this.fixed.width : this.host.clientWidth;
       if (width < 80) return;
       const scale = this.fixed ? this.fixed.scale : window.devicePixelRatio || 1;

@@ -74,6 +74,9 @@ class FigureStore:
     def add(self, figure: Figure) -> Html:
         """The figure's place on the page."""
         total = len(figure.t)
+        if total < 2:
+            words = f"{figure.title}: {total or 'no'} sample, nothing to draw."
+            return tag("p", words, class_="note")
         keep = kept_samples(_columns(figure), self.most)
         t = figure.t if keep is None else figure.t[keep]
         panels = [

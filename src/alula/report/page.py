@@ -20,7 +20,7 @@ from alula.report.sections.summary import header
 
 _SCRIPTS = ("alula_series.js", "alula_link.js", "alula_plot.js", "report.js")
 _BUDGET = 2_000_000  # bytes of plot data, so that the page stays well under 3 MB
-_LEAST = 600  # samples that a figure carries in any case: two per pixel of its width
+_LEAST = 150  # samples that a figure carries in any case, so that its course can be seen
 
 
 def render(report: ReportInput) -> str:

@@ -11,7 +11,8 @@ from alula.report.numbers import MISSING, number, percent, rms
 
 def coefficients(result: Identification, figures: FigureStore) -> Html:
     """The table of fits, then for each coefficient one plot per maneuver."""
-    return join([_fits(result), *(_coefficient(result, name, figures) for name in result.fits)])
+    names = dict.fromkeys([*result.fits, *(s.coefficient for s in result.series)])
+    return join([_fits(result), *(_coefficient(result, name, figures) for name in names)])
 
 
 def _fits(result: Identification) -> Html:
@@ -51,12 +52,14 @@ def _coefficient(result: Identification, name: str, figures: FigureStore) -> Htm
     words = f", {WORDS[name]}" if name in WORDS else ""
     if name in result.labels:
         words += f" ({result.labels[name]})"
+    model: Html | None = None
+    if name in result.fits:
+        formula = tag("code", f"{name} = {result.fits[name].formula}")
+        model = tag("p", "Model: ", formula, class_="note lead")
     return tag(
         "section",
         tag("h3", tag("code", name), words),
-        tag(
-            "p", "Model: ", tag("code", f"{name} = {result.fits[name].formula}"), class_="note lead"
-        ),
+        model,
         tag("div", *(figures.add(_figure(s)) for s in series), class_="grid"),
     )
 

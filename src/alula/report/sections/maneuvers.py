@@ -27,7 +27,7 @@ def maneuvers(report: ReportInput) -> Html:
                 m.aspect,
                 tag("span", "held out", class_="tag") if m.held_out else "fit",
                 ", ".join(f"{k} {v}" for k, v in m.configuration.items()) or MISSING,
-                _entry(card.entry) if card else MISSING,
+                tag("span", _entry(card.entry) if card else MISSING, class_="entry"),
             ]
         )
     return table(

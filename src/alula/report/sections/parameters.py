@@ -67,7 +67,9 @@ def _table(coefficient: str, members: list[Parameter]) -> Html:
         head.insert(4, "Truth")
         head[head.index("Zero and interval")] = "Truth ◇ and interval"
     right = (1, 3, 4, 6, 7, 8) if truth else (1, 3, 5, 6, 7)
-    return table(join([tag("code", coefficient), words]), head, rows, numeric=right, class_="dense")
+    return table(
+        join([tag("code", coefficient), words]), head, rows, numeric=right, class_="dense whole"
+    )
 
 
 def _row(p: Parameter) -> list[object]:

@@ -9,8 +9,8 @@ import numpy as np
 from alula.reconstruct.result import Reconstruction, Segment, SensorFit
 from alula.report.figures import FigureStore
 from alula.report.html import Html, join, table, tag
-from alula.report.names import meaning, titled
-from alula.report.numbers import number, plus_minus, rms, shown
+from alula.report.names import meaning, titled, unit_of
+from alula.report.numbers import MISSING, number, plus_minus, rms, shown
 from alula.report.pictures import mark, within_picture
 from alula.report.sections.motion import motion_figures, sensor_figure, state_figures
 
@@ -82,18 +82,19 @@ def _nis(result: Reconstruction) -> Html:
 
 def _mismatch(result: Reconstruction) -> Html:
     """Rms of measurement minus open-loop kinematics: a row per maneuver, a column per sensor."""
-    units = {s.name: s.unit for g in result.segments for s in g.sensors}
     names = list(dict.fromkeys(n for g in result.segments for n in g.mismatch))
+    units = {n: unit_of(n) for n in names}
+    units |= {s.name: s.unit for g in result.segments for s in g.sensors}
     if not names:
         return Html("")
 
     def cell(segment: Segment, name: str) -> str:
-        return number(shown(units.get(name, "")).factor * segment.mismatch.get(name, math.nan), 3)
+        return number(shown(units[name]).factor * segment.mismatch.get(name, math.nan), 3)
 
     return table(
         "Mismatch: rms of measurement minus the kinematics integrated open loop with the estimated "
         "constants and initial state. No filter smooths it.",
-        ["Maneuver", *(f"{n}, {shown(units.get(n, '')).text}" for n in names)],
+        ["Maneuver", *(f"{n}, {shown(units[n]).text}" for n in names)],
         ([tag("code", g.maneuver.id), *(cell(g, n) for n in names)] for g in result.segments),
         numeric=range(1, len(names) + 1),
     )
@@ -107,7 +108,10 @@ def _whiteness(result: Reconstruction) -> Html:
             factor, unit = shown(s.unit)
             samples = int(np.isfinite(s.measured).sum())
             bound = 2.0 / math.sqrt(max(samples, 1))
-            white = abs(s.whiteness) <= bound
+            judged: Html | str = MISSING
+            if math.isfinite(s.whiteness):
+                white = abs(s.whiteness) <= bound
+                judged = mark("good", "white") if white else mark("caution", "colored")
             rows.append(
                 [
                     tag("code", s.name),
@@ -118,9 +122,11 @@ def _whiteness(result: Reconstruction) -> Html:
                     number(factor * rms(s.measured - s.fitted), 3),
                     _inside(s),
                     number(s.whiteness, 2),
-                    mark("good", "white") if white else mark("caution", "colored"),
+                    judged,
                 ]
             )
+    if not rows:
+        return tag("p", "No sensor was compared with the motion.")
     return table(
         "Sensors: stated noise, residual (measured minus fitted), share of innovations inside "
         "their 2 σ band (95 % expected) and lag-1 autocorrelation, called white within ±2/√n.",
@@ -144,7 +150,7 @@ def _whiteness(result: Reconstruction) -> Html:
 def _inside(s: SensorFit) -> str:
     known = np.isfinite(s.innovation) & np.isfinite(s.innovation_se)
     if not known.any():
-        return "–"
+        return MISSING
     share = np.mean(np.abs(s.innovation[known]) <= 2.0 * s.innovation_se[known])
     return f"{100.0 * share:.0f} %"
 
@@ -164,5 +170,6 @@ def _segment(segment: Segment, figures: FigureStore) -> Html:
         ),
     ]
     held = tag("span", "held out", class_="tag") if maneuver.held_out else ""
-    heading = tag("h3", "Maneuver ", tag("code", maneuver.id), f" ({maneuver.kind}) ", held)
+    kind = f" ({maneuver.kind}) " if maneuver.kind else " "
+    heading = tag("h3", "Maneuver ", tag("code", maneuver.id), kind, held)
     return tag("section", heading, *grid, class_="maneuver")

@@ -1,0 +1,169 @@
+"""What every command has in common: options, exit codes, the JSON envelope, progress, errors."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import sys
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import typer
+
+from alula.base.messages import BadInput, Message, refuse
+
+if TYPE_CHECKING:
+    from alula.flight import SourceFile
+
+Status = Literal["ok", "not_identifiable", "check_failed", "bad_input"]
+EXIT: Mapping[Status, int] = {"ok": 0, "not_identifiable": 1, "check_failed": 1, "bad_input": 2}
+
+JsonOption = Annotated[
+    str, typer.Option("--json", metavar="FILE|-", help="Write the result as JSON; - is stdout.")
+]
+SeedOption = Annotated[int | None, typer.Option("--seed", help="Seed of anything random.")]
+ThreadsOption = Annotated[
+    int, typer.Option("--threads", min=0, help="Threads to use; 0 leaves it to the libraries.")
+]
+QuietOption = Annotated[bool, typer.Option("--quiet", help="No progress and no notes.")]
+
+
+@dataclass
+class Command:
+    """One run of one command: collects what the envelope holds and ends with the right code."""
+
+    name: str  # of the schema: 'identification'
+    json: str = ""
+    seed: int | None = None
+    threads: int = 0
+    quiet: bool = False
+    status: Status = "ok"
+    messages: Sequence[Message] = ()
+    inputs: Sequence[SourceFile] = ()
+    result: Mapping[str, Any] = field(default_factory=dict)
+    timing: Mapping[str, float] = field(default_factory=dict)
+    _start: float = field(default_factory=time.perf_counter)
+
+    @property
+    def talks(self) -> bool:
+        """Whether stdout is for people."""
+        return self.json != "-"
+
+    def progress(self, text: str) -> None:
+        """One line on stderr about what is being done."""
+        if not self.quiet:
+            typer.echo(f"… {text}", err=True)
+
+    def say(self, text: str) -> None:
+        """Text for people, on stdout; nothing where stdout is JSON."""
+        if self.talks:
+            typer.echo(text)
+
+    @contextmanager
+    def run(self) -> Iterator[None]:
+        """The command's body. Bad input ends in messages and code 2, never in a traceback."""
+        if self.threads:
+            for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+                os.environ[name] = str(self.threads)
+        try:
+            if self.json and self.talks:
+                writable(Path(self.json))
+            yield
+        except BadInput as error:
+            self.status, self.messages = "bad_input", error.messages
+            self.result = {}
+        self._finish()
+
+    def _finish(self) -> None:
+        shown = [m for m in self.messages if m.level != "info" or self.status == "bad_input"]
+        for message in shown if not self.quiet or self.status == "bad_input" else []:
+            typer.echo(f"{message.level}: {message}", err=True)
+        if self.json:
+            try:
+                self._write(json.dumps(self._envelope(), indent=1, allow_nan=False) + "\n")
+            except BadInput as error:
+                typer.echo(f"error: {error}", err=True)
+                raise typer.Exit(2) from None
+        raise typer.Exit(EXIT[self.status])
+
+    def _write(self, text: str) -> None:
+        if self.talks:
+            from alula.base.files import write_whole
+
+            write_whole(Path(self.json), text)
+        else:
+            sys.stdout.write(text)
+
+    def _envelope(self) -> dict[str, Any]:
+        from alula.base.provenance import provenance
+
+        lost: list[str] = []
+        result = finite(self.result, "result", lost)
+        messages = [m.as_dict() for m in self.messages]
+        if lost:
+            messages.append(
+                Message(
+                    "non_finite",
+                    "info",
+                    ", ".join(lost[:20]) + (" ..." if len(lost) > 20 else ""),
+                    "numbers",
+                    f"{len(lost)} that are not finite",
+                    "They are null in this file: there is no value to give.",
+                ).as_dict()
+            )
+        return {
+            "schema": f"alula.{self.name}/1",
+            "status": self.status,
+            "messages": messages,
+            "inputs": [
+                {
+                    "path": f.path,
+                    "sha256": f.sha256,
+                    "bytes": f.bytes,
+                    "decoded": f.decoded,
+                    "skipped": f.skipped,
+                    "unknown": f.unknown,
+                }
+                for f in self.inputs
+            ],
+            "result": result,
+            "provenance": provenance(self.seed),
+            "timing_s": {
+                **{k: round(v, 4) for k, v in self.timing.items()},
+                "total": round(time.perf_counter() - self._start, 4),
+            },
+        }
+
+
+def finite(value: Any, where: str, lost: list[str]) -> Any:
+    """The value with every number that is not finite replaced by None; its place goes to `lost`."""
+    if isinstance(value, Mapping):
+        return {str(k): finite(v, f"{where}.{k}", lost) for k, v in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [finite(v, f"{where}[{i}]", lost) for i, v in enumerate(value)]
+    if isinstance(value, float) and not math.isfinite(value):
+        lost.append(where)
+        return None
+    return value
+
+
+def writable(path: Path) -> None:
+    """Raise BadInput at once if a file could not be written there after the work is done."""
+    folder = path.absolute().parent
+    if path.is_dir() or not folder.is_dir() or not os.access(folder, os.W_OK):
+        raise refuse(
+            "output_not_writable",
+            where=str(path),
+            expected="a file name in a folder that exists and can be written to",
+            found="a folder"
+            if path.is_dir()
+            else "a folder without write permission"
+            if folder.is_dir()
+            else f"no folder {folder}",
+            do="Choose another path; nothing was done yet.",
+        )

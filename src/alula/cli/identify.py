@@ -1,0 +1,235 @@
+"""`alula identify PROJECT`: from logs to derivatives with error bars, and the report."""
+
+from __future__ import annotations
+
+import math
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from alula.cli.contract import (
+    Command,
+    JsonOption,
+    QuietOption,
+    SeedOption,
+    ThreadsOption,
+    writable,
+)
+
+if TYPE_CHECKING:
+    from alula.campaign import Job
+
+
+class Filter(StrEnum):
+    """How the flight path is reconstructed."""
+
+    ekf = "ekf"
+    ukf = "ukf"
+    ml = "ml"
+    none = "none"
+
+
+class Method(StrEnum):
+    """How the model is identified."""
+
+    ee = "ee"
+
+
+def identify(
+    project: Annotated[Path, typer.Argument(help="The project file.")],
+    method: Annotated[Method | None, typer.Option(help="Instead of the project's.")] = None,
+    filter: Annotated[Filter | None, typer.Option(help="Instead of the project's.")] = None,
+    maneuver: Annotated[
+        list[str] | None, typer.Option(help="Only this maneuver; may be given several times.")
+    ] = None,
+    report: Annotated[Path | None, typer.Option(help="Write the HTML report there.")] = None,
+    model: Annotated[Path | None, typer.Option(help="Write the identified model there.")] = None,
+    truth: Annotated[
+        Path | None, typer.Option(help='JSON {"parameters": {name: value}} to set beside.')
+    ] = None,
+    json: JsonOption = "",
+    seed: SeedOption = None,
+    threads: ThreadsOption = 0,
+    quiet: QuietOption = False,
+) -> None:
+    """Identify the aircraft's derivatives from its logs, with error bars and verdicts.
+
+    Exit 0: every parameter is determined. 1: the data cannot tell some; they read
+    not_identifiable. 2: bad input.
+    """
+    command = Command("identification", json, seed, threads, quiet)
+    with command.run():
+        for path in (report, model):
+            if path is not None:
+                writable(path)
+        from alula.campaign import run_project
+
+        job = run_project(
+            str(project),
+            filter=None if filter is None else filter.value,
+            method=None if method is None else method.value,
+            only=maneuver or (),
+            truth=None if truth is None else _truth(truth),
+            progress=command.progress,
+        )
+        command.messages = job.all_messages()
+        command.inputs = [f for card in job.checked.cards for f in card.files]
+        command.timing = job.seconds
+        command.result = result_of(job)
+        if not job.identification.identifiable:
+            command.status = "not_identifiable"
+        elif not job.reconstruction.converged:
+            command.status = "check_failed"
+        command.say(text_of(job))
+        if model is not None:
+            _write_model(job, model, command)
+        if report is not None:
+            _write_report(job, report, command)
+
+
+def result_of(job: Job) -> dict[str, Any]:
+    """The envelope's `result`."""
+    found, path = job.identification, job.reconstruction
+    return {
+        "method": found.method,
+        "status": found.status,
+        "parameters": [
+            {
+                "name": p.name,
+                "coefficient": p.coefficient,
+                "value": p.value,
+                "se_white": p.se_white,
+                "se": p.se,
+                "ci95": list(p.ci95),
+                "verdict": p.verdict,
+                "tied_to": [{"name": t.name, "weight": t.weight} for t in p.tied_to],
+                "unit": p.unit,
+                "vif": p.vif,
+                **({} if p.truth is None else {"truth": p.truth}),
+            }
+            for p in found.parameters
+        ],
+        "fit": {
+            name: {
+                "formula": f.formula,
+                "r2": f.r2,
+                "rrmse": f.rrmse,
+                "n": f.n,
+                "n_held_out": f.n_held_out,
+                "r2_held_out": f.r2_held_out,
+            }
+            for name, f in found.fits.items()
+        },
+        "reconstruction": {
+            "method": path.method,
+            "status": path.status,
+            "biases": [
+                {
+                    "name": c.name,
+                    "value": c.value,
+                    "se": c.se,
+                    "unit": c.unit,
+                    "observable": c.observable,
+                }
+                for c in path.constants
+            ],
+            "nis": {
+                "mean": path.nis_mean,
+                "lo": path.nis_interval[0],
+                "hi": path.nis_interval[1],
+            },
+            "mismatch": _mismatch(job),
+            "maneuvers": {s.maneuver.id: _in_degrees(s.mismatch) for s in path.segments},
+        },
+    }
+
+
+def _in_degrees(mismatch: Any) -> dict[str, float]:
+    """Angles in degrees under a name that says so; others as they are."""
+    angles = ("alpha", "beta", "beta_flank", "phi", "theta", "psi")
+    return {
+        (f"{name}_deg" if name in angles else name): math.degrees(v) if name in angles else v
+        for name, v in mismatch.items()
+    }
+
+
+def _mismatch(job: Job) -> dict[str, float]:
+    """Rms over all maneuvers, each by its number of samples."""
+    squares: dict[str, float] = {}
+    counts: dict[str, int] = {}
+    for segment in job.reconstruction.segments:
+        n = len(segment.motion.t)
+        for name, rms in _in_degrees(segment.mismatch).items():
+            squares[name] = squares.get(name, 0.0) + n * rms**2
+            counts[name] = counts.get(name, 0) + n
+    return {name: math.sqrt(squares[name] / counts[name]) for name in squares}
+
+
+def text_of(job: Job) -> str:
+    """What the command prints: the reconstruction's constants, then the parameters."""
+    lines = []
+    path = job.reconstruction
+    if path.constants:
+        lines.append(f"Flight path reconstruction by {path.method}: {path.status}")
+        for c in path.constants:
+            mark = "" if c.observable else "   not observable"
+            lines.append(f"  {c.name:<14}{c.value:>12.5g} ± {c.se:.2g} {c.unit}{mark}")
+        mismatch = ", ".join(f"{k} {v:.3g}" for k, v in _mismatch(job).items())
+        lines.append(f"  open-loop mismatch (rms, SI or deg): {mismatch}")
+        lines.append("")
+    lines.append(job.identification.summary())
+    return "\n".join(lines)
+
+
+def _truth(path: Path) -> dict[str, float]:
+    import json
+
+    from alula.base.messages import refuse
+
+    try:
+        found = json.loads(path.read_text())["parameters"]
+        return {str(k): float(v) for k, v in found.items()}
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        raise refuse(
+            "bad_truth",
+            where=str(path),
+            expected='JSON of the form {"parameters": {"Cm_alpha": -0.4}}',
+            found=str(error) or type(error).__name__,
+            do="Correct the file, or leave --truth out.",
+        ) from None
+
+
+def _write_report(job: Job, path: Path, command: Command) -> None:
+    from datetime import UTC, datetime
+
+    from alula.base.files import write_whole
+    from alula.campaign import report_of
+    from alula.report import render
+
+    command.progress("writing the report")
+    date = datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC")
+    write_whole(path, render(report_of(job, date, command.seed)))
+    command.say(f"\nReport: {path}")
+
+
+def _write_model(job: Job, path: Path, command: Command) -> None:
+    from alula.base.provenance import provenance
+    from alula.identify import identified_model
+    from alula.model import Reference, save_model
+
+    aircraft = job.checked.aircraft
+    made = identified_model(
+        job.identification,
+        job.checked.project.name,
+        Reference(aircraft.S, aircraft.b, aircraft.c),
+        data=job.data,
+        reference_point=aircraft.reference_point,
+        provenance={
+            **{f.path: f.sha256 for card in job.checked.cards for f in card.files},
+            "alula": provenance(command.seed)["alula"],
+        },
+    )
+    save_model(made, path)
+    command.say(f"\nModel: {path}")

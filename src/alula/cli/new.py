@@ -1,0 +1,56 @@
+"""`alula new LOG`: a project file with guessed channels, to be confirmed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from alula.cli.contract import (
+    Command,
+    JsonOption,
+    QuietOption,
+    SeedOption,
+    ThreadsOption,
+    writable,
+)
+
+
+def new(
+    log: Annotated[Path, typer.Argument(help="The flight log.")],
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Project file [LOG's name .toml, here].")
+    ] = None,
+    json: JsonOption = "",
+    seed: SeedOption = None,
+    threads: ThreadsOption = 0,
+    quiet: QuietOption = False,
+) -> None:
+    """Write a project file for a log, with every channel that can be guessed.
+
+    Guesses are marked: confirm them before you believe a result.
+    """
+    command = Command("project", json, seed, threads, quiet)
+    with command.run():
+        from alula.base.files import write_whole
+        from alula.base.messages import refuse
+        from alula.logs.guess import new_project
+
+        path = output or Path(log.name).with_suffix(".toml")
+        writable(path)
+        if path.exists():
+            raise refuse(
+                "file_exists",
+                where=str(path),
+                expected="a name that is free",
+                found="a file",
+                do="Choose another with --output; nothing is overwritten.",
+            )
+        command.progress(f"looking at {log}")
+        write_whole(path, new_project(log, path.absolute().parent))
+        command.result = {"project": str(path)}
+        command.say(
+            f"{path} written. Confirm its channels, name the aircraft file and the maneuvers,\n"
+            f"then: alula check {path}"
+        )

@@ -1,0 +1,50 @@
+"""`alula schema`: JSON schemas of the project and the aircraft file, for editors."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import Annotated
+
+import typer
+
+from alula.cli.contract import (
+    Command,
+    JsonOption,
+    QuietOption,
+    SeedOption,
+    ThreadsOption,
+)
+
+
+class Kind(StrEnum):
+    """The files that have a schema."""
+
+    project = "project"
+    aircraft = "aircraft"
+
+
+def schema(
+    kind: Annotated[Kind, typer.Argument(help="Which file's schema.")] = Kind.project,
+    json: JsonOption = "",
+    seed: SeedOption = None,
+    threads: ThreadsOption = 0,
+    quiet: QuietOption = False,
+) -> None:
+    """Print the JSON schema of the project or the aircraft file.
+
+    Editors that know JSON schemas for TOML complete and check the files with it.
+    """
+    command = Command("schema", json, seed, threads, quiet)
+    with command.run():
+        import json as text
+
+        if kind is Kind.project:
+            from alula.base.project import Project
+
+            found = Project.model_json_schema()
+        else:
+            from alula.aircraft import aircraft_schema
+
+            found = aircraft_schema()
+        command.result = found
+        command.say(text.dumps(found, indent=2))
