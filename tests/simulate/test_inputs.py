@@ -40,8 +40,8 @@ def test_ramps_are_as_steep_as_asked() -> None:
     signal = doublet(1.0, 1.0, 0.5, ramp=0.1)
     t = np.arange(0.0, 3.0, 1e-4)
     # A half cosine through 2 in 0.1 s is steepest in its middle: pi/2 times the mean slope. The
-    # chord over 1e-4 s lies below it by (pi 1e-3)^2 / 24.
-    assert np.abs(np.diff(signal.value(t))).max() / 1e-4 == pytest.approx(np.pi / 2 * 20, rel=1e-6)
+    # chord over 1e-4 s, half a step off the middle, lies below it by (pi 1e-3)^2 / 6 at most.
+    assert np.abs(np.diff(signal.value(t))).max() / 1e-4 == pytest.approx(np.pi / 2 * 20, rel=2e-6)
     assert signal.value(np.array([1.0, 1.05, 1.1])) == pytest.approx([0.0, 0.5, 1.0])
 
 
