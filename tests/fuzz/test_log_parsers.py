@@ -1,7 +1,7 @@
 """Parsers on damaged and random files: a Flight or a BadInput, never anything else.
 
-The numbers of examples are small enough for every run; raise them with HYPOTHESIS_PROFILE-like
-settings of your own when a parser changes.
+The examples are few enough for every run; raise max_examples and set derandomize=False for a while
+when a parser changes.
 """
 
 from __future__ import annotations

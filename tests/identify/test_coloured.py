@@ -37,7 +37,8 @@ def test_it_is_the_double_sum_of_its_definition():
 def test_intervals_cover_as_often_as_they_say(tau):
     """600 fits of 8 s at 50 Hz: the standard error of a coverage of 95 % is 0.9 %.
 
-    The constant term is left out: residuals slower than the maneuver cannot be told from it.
+    The constant term may cover more: residuals slower than the maneuver cannot be told from it, so
+    its interval is wide.
     """
     rng = np.random.default_rng(11)
     x = short_period(400, 0.02)
@@ -50,7 +51,7 @@ def test_intervals_cover_as_often_as_they_say(tau):
         for i, p in enumerate(found):
             inside[i] += p.ci95[0] < 0.0 < p.ci95[1]
             white[i] += abs(p.value) < 1.96 * p.se_white
-    assert np.all(inside[1:] / repeats > 0.92)
+    assert np.all(inside / repeats > 0.92)
     assert np.all(inside[1:] / repeats < 0.98)
     if tau == 1.0:
         assert np.all(white[1:] / repeats < 0.8)  # and plain intervals do not

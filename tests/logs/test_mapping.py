@@ -92,6 +92,19 @@ def test_times_of_their_own(tmp_path: Path) -> None:
     assert codes(refused(path, {"t": ("t", "s"), "h": ("h", "m")})) == ["length_mismatch"]
 
 
+def test_held_values_are_said_and_dropped_on_request(tmp_path: Path) -> None:
+    table = TABLE.copy()
+    table[:, 4] = np.repeat(TABLE[::5, 4], 5)
+    path = write_csv(tmp_path, table)
+    flight = read_flight(path)
+    (message,) = [m for m in flight.messages if m.code == "held_values"]
+    assert "every 5 samples" in message.found
+    assert len(flight["V"].t) == len(T)
+    channel = mapped(path, **{"from": "V", "unit": "m/s", "repeats": "drop"})
+    np.testing.assert_array_equal(channel.t, T[::5])
+    np.testing.assert_array_equal(channel.values, TABLE[::5, 4])
+
+
 def test_log_s_own_channels_take_precedence(path: Path) -> None:
     own = log(path, channels={"V": {"from": "V", "unit": "kt"}})
     flight = read(own, specs(**NAMED))

@@ -141,7 +141,7 @@ def test_a_broken_encoding_does_not_stop_the_report() -> None:
 def test_held_out_maneuvers_are_labelled(text: str) -> None:
     held = re.findall(r"<figcaption><strong>([^<]*)</strong> <span class=\"tag\">([^<]*)", text)
     assert held == [(f"{c} · rudder", "held out: not used in the fit") for c in ("CY", "Cl")]
-    assert "no maneuver was held out" in text  # of CZ and Cm
+    assert "no maneuver was held out: <code>CZ</code>, <code>Cm</code>." in text
 
 
 def test_what_is_not_identifiable_shows_no_value_and_its_combination(text: str) -> None:

@@ -64,6 +64,9 @@ class ChannelSpec(Strict):
     )
     time: str | TimeSpec | None = Field(default=None, description="default: the channel 't'")
     fill_values: list[float] | None = Field(default=None, description="values that mean 'no data'")
+    repeats: Literal["keep", "drop"] = Field(
+        default="keep", description="drop: a value equal to the one before is held, no sample"
+    )
     confirmed: bool = Field(
         default=False, description="the unit is right although the values look as if it were not"
     )

@@ -23,12 +23,12 @@ def read_toml(path: Path) -> tuple[str, dict[str, Any], str]:
     """Text, tree and SHA-256 of a TOML file; raises BadInput if it is not one."""
     try:
         data = path.read_bytes()
-    except OSError as error:
+    except (OSError, ValueError) as error:
         raise refuse(
             "file_not_readable",
             where=str(path),
             expected="a TOML file",
-            found=error.strerror or str(error),
+            found=getattr(error, "strerror", None) or str(error),
             do="Check the path.",
         ) from None
     try:
@@ -60,7 +60,7 @@ def expand(text: str, file: Path, key: str) -> str:
             )
         return os.environ[name]
 
-    expanded = Path(re.sub(r"\$\{(\w+)\}", value, text)).expanduser()
+    expanded = os.path.expanduser(re.sub(r"\$\{(\w+)\}", value, text))
     return os.path.abspath(file.parent / expanded)
 
 

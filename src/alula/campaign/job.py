@@ -133,11 +133,13 @@ def run_project(
     )
     clock["reconstruct"] = time.perf_counter()
     progress("identifying")
+    identifier = IDENTIFIERS[_method(method or project.identify.method)]
     models = _models(project, checked.maneuvers)
-    data = coefficient_data(checked, reconstruction, shared=spec.share == "all")
-    identification = IDENTIFIERS[_method(method or project.identify.method)](
-        data, models, project.identify.options, truth
-    )
+    data: tuple[CoefficientData, ...] = ()
+    identification = NOTHING_ASKED
+    if models:
+        data = coefficient_data(checked, reconstruction, shared=spec.share == "all")
+        identification = identifier(data, models, project.identify.options, truth)
     clock["identify"] = time.perf_counter()
     stamps = list(clock.values())
     seconds = {name: b - a for name, a, b in zip(list(clock)[1:], stamps, stamps[1:], strict=False)}
@@ -236,6 +238,17 @@ IDENTIFIERS: Mapping[
         Identification,
     ],
 ] = {"ee": _equation_error}
+
+
+# A project without models wants the flight path only.
+NOTHING_ASKED = Identification(
+    method="none",
+    parameters=(),
+    fits={},
+    series=(),
+    covariance=np.zeros((0, 0)),
+    status="no [identify.models] in the project: the flight path was reconstructed, no more",
+)
 
 
 def _method(name: str) -> str:

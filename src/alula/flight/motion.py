@@ -42,6 +42,7 @@ class Motion:
     controls: Mapping[str, Array] = field(default_factory=dict)  # de da dr df dt, rad (dt: 0 to 1)
     thrust: Array | None = None  # N, all engines
     fuel_used: Array | None = None  # kg
+    window_s: float = 0.0  # of the local cubics that gave pdot qdot rdot; 0 where recorded
     recorded: Mapping[str, Array] = field(default_factory=dict)  # coefficients as recorded: 'CZ'
 
     @property

@@ -15,6 +15,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from alula.base.arrays import Array, frozen
+from alula.base.local_cubic import LocalCubic
 from alula.base.messages import Message, note, refuse
 from alula.flight import Maneuver, Motion
 
@@ -64,6 +65,7 @@ class CoefficientData:
 
     coefficients: by name. variables: the regressors' base variables by name, SI and radians.
     labels: what a coefficient includes beyond aerodynamics ('including thrust').
+    cubic: the smoothing in the moment coefficients, which their regressors must share.
     """
 
     maneuver: Maneuver
@@ -71,6 +73,7 @@ class CoefficientData:
     coefficients: Mapping[str, Array]
     variables: Mapping[str, Array]
     perturbed: tuple[Perturbed, ...] = ()
+    cubic: LocalCubic | None = None
     labels: Mapping[str, str] | None = None
     messages: tuple[Message, ...] = ()
 
@@ -102,9 +105,11 @@ def body_coefficients(
     cg: Array,
     inertia: Array,
     thrust: Sequence[Thrust],
+    cubic: LocalCubic | None = None,
 ) -> dict[str, Array]:
     """CX CY CZ Cl Cm Cn and CD CL, each (n,), thrust removed.
 
+    cubic: what smoothed the angular accelerations; the rest of the moments passes the same filter.
     mass: (n,) kg. cg: (n, 3) m. inertia: (n, 3, 3) kg m2 about the CG, products of inertia with
     their minus signs. CD, CL are in stability axes (turned by alpha alone).
     """
@@ -112,7 +117,8 @@ def body_coefficients(
     omega_dot = np.column_stack([motion.pdot, motion.qdot, motion.rdot])
     force = mass[:, None] * np.column_stack([motion.ax, motion.ay, motion.az])
     momentum = np.einsum("nij,nj->ni", inertia, omega)
-    moment = np.einsum("nij,nj->ni", inertia, omega_dot) + np.cross(omega, momentum)
+    inertial = np.einsum("nij,nj->ni", inertia, omega_dot)
+    moment = np.cross(omega, momentum)
     for engine in thrust:
         pull = engine.force[:, None] * engine.direction
         force = force - pull
@@ -121,6 +127,7 @@ def body_coefficients(
     pressure_area = 0.5 * motion.rho * motion.V**2 * reference.S
     cf = force / pressure_area[:, None]
     cm = moment / pressure_area[:, None]
+    cm = (cm if cubic is None else cubic.matched(cm)) + inertial / pressure_area[:, None]
     sin, cos = np.sin(motion.alpha), np.cos(motion.alpha)
     return {
         "CX": cf[:, 0],
@@ -154,12 +161,13 @@ def coefficients_from_motion(
     length does not fit, a number is not finite, or the airspeed is not positive.
     """
     _check(motion, mass, cg, inertia, thrust)
-    nominal = body_coefficients(motion, reference, mass, cg, inertia, thrust)
+    cubic = LocalCubic(motion.t, motion.window_s) if motion.window_s > 0.0 else None
+    nominal = body_coefficients(motion, reference, mass, cg, inertia, thrust, cubic)
     variables = regressor_variables(motion, reference)
     ways = [
         Perturbed(
             source=f"reconstruction {i}" + ("" if shared else f" [{motion.maneuver.id}]"),
-            coefficients=body_coefficients(other, reference, mass, cg, inertia, thrust),
+            coefficients=body_coefficients(other, reference, mass, cg, inertia, thrust, cubic),
             variables=regressor_variables(other, reference),
         )
         for i, other in enumerate(perturbed)
@@ -168,7 +176,7 @@ def coefficients_from_motion(
         if engine.relative_se > 0.0:
             off = list(thrust)
             off[i] = replace(engine, force=engine.force * (1.0 + engine.relative_se))
-            changed = body_coefficients(motion, reference, mass, cg, inertia, off)
+            changed = body_coefficients(motion, reference, mass, cg, inertia, off, cubic)
             ways.append(Perturbed(f"thrust {i + 1}", changed, variables))
     return CoefficientData(
         maneuver=motion.maneuver,
@@ -176,6 +184,7 @@ def coefficients_from_motion(
         coefficients={name: frozen(values) for name, values in nominal.items()},
         variables=variables,
         perturbed=tuple(ways),
+        cubic=cubic,
         labels={} if thrust else dict.fromkeys(("CX", "CZ", "CD", "CL", "Cm"), "including thrust"),
         messages=() if thrust else (_no_thrust(motion.maneuver),),
     )

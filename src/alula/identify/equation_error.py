@@ -22,6 +22,7 @@ from alula.identify.verdict import assess
 from alula.model import reference_scales, regressors
 
 LONGITUDINAL = frozenset({"CX", "CZ", "CD", "CL", "Cm"})
+MOMENTS = frozenset({"Cl", "Cm", "Cn"})
 
 
 def identify_equation_error(
@@ -52,6 +53,14 @@ def identify_equation_error(
             expected="a formula for at least one coefficient",
             found="none",
             do='State one, e.g. Cm = "1 + alpha + qhat + de".',
+        )
+    if weighting not in ("residual", "equal"):
+        raise refuse(
+            "unknown_option",
+            where="weighting",
+            expected="'residual' or 'equal'",
+            found=repr(weighting),
+            do="Weight maneuvers by their residual variance, or all the same.",
         )
     fits: dict[str, Fit] = {}
     parameters: list[Parameter] = []
@@ -109,11 +118,15 @@ class _Task:
         own = tuple(f"{self.constant}[{d.maneuver.id}]" for d in learn) if self.split else ()
         self.names = (*own, *self.shared)
 
-    def terms_of(self, variables: Mapping[str, Array]) -> Array:
-        """The formula's regressors (n, k) in the order of `terms`."""
+    def terms_of(self, item: CoefficientData, variables: Mapping[str, Array]) -> Array:
+        """The formula's regressors (n, k) in the order of `terms`, smoothed as the measured side:
+        beside a smoothed moment sharper regressors would draw every estimate toward zero.
+        """
         names, matrix = regressors(self.coefficient, self.formula, variables)
         assert tuple(names) == self.terms  # a formula's terms do not depend on the data
-        return matrix
+        if item.cubic is None or self.coefficient not in MOMENTS:
+            return matrix
+        return item.cubic.matched(matrix)
 
     def blocks(self, source: str | None) -> list[Block]:
         """One block per maneuver, as it was or as `source` would have had it."""
@@ -124,7 +137,7 @@ class _Task:
                 if way.source == source:
                     coefficients, variables = way.coefficients, way.variables
             measured = coefficients[self.coefficient]
-            matrix = self.terms_of(variables)
+            matrix = self.terms_of(item, variables)
             if self.split:
                 own = np.zeros((len(measured), len(self.learn)))
                 own[:, i] = 1.0
@@ -184,7 +197,7 @@ def _series(task: _Task, fit: Regression, serving: Sequence[CoefficientData]) ->
         measured = item.coefficients[task.coefficient]
         own = f"{task.constant}[{item.maneuver.id}]"
         used = [value.get(own, 0.0) if n not in value else value[n] for n in task.terms]
-        model = task.terms_of(item.variables) @ np.array(used)
+        model = task.terms_of(item, item.variables) @ np.array(used)
         if item.maneuver.held_out and task.constant in task.terms:
             model = model + np.mean(measured - model)
         out.append(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from alula.identify.result import Identification, Parameter
 
-_WIDTH = 100
+_WIDTH = 104
 
 
 def summary(result: Identification) -> str:
@@ -35,7 +35,7 @@ def summary(result: Identification) -> str:
 def _header(result: Identification) -> str:
     truth = any(p.truth is not None for p in result.parameters)
     return (
-        f"{'parameter':<18}{'value':>11}{'se':>11}{'se white':>11}{'[0.025':>11}{'0.975]':>11}"
+        f"{'parameter':<18}{'value':>12}{'se':>11}{'se white':>11}{'[0.025':>12}{'0.975]':>12}"
         f"{'unit':>9}{'VIF':>8}" + (f"{'truth':>11}" if truth else "") + "  verdict"
     )
 
@@ -44,7 +44,7 @@ def _row(p: Parameter) -> str:
     truth = "" if p.truth is None else f"{p.truth:>11.5g}"
     unit = "" if p.unit == "1" else p.unit
     if p.verdict == "not_identifiable":
-        gap = f"{'-':>11}" * 5
+        gap = f"{'-':>12}{'-':>11}{'-':>11}{'-':>12}{'-':>12}"
         tied = " ".join(
             f"{'+' if tie.weight >= 0 else '-'} {abs(tie.weight):.3g} {tie.name}"
             for tie in p.tied_to
@@ -52,6 +52,6 @@ def _row(p: Parameter) -> str:
         words = "not identifiable" + (f": only {p.name} {tied}" if tied else ": not excited")
         return f"{p.name:<18}{gap}{unit:>9}{p.vif:>8.3g}{truth}  {words}"
     return (
-        f"{p.name:<18}{p.value:>11.5g}{p.se:>11.3g}{p.se_white:>11.3g}{p.ci95[0]:>11.5g}"
-        f"{p.ci95[1]:>11.5g}{unit:>9}{p.vif:>8.3g}{truth}  {p.verdict}"
+        f"{p.name:<18}{p.value:>12.5g}{p.se:>11.3g}{p.se_white:>11.3g}{p.ci95[0]:>12.4g}"
+        f"{p.ci95[1]:>12.4g}{unit:>9}{p.vif:>8.3g}{truth}  {p.verdict}"
     )

@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from scipy import stats
+from scipy import special
 
 from alula.base.arrays import Array
 from alula.base.messages import Message, warn
@@ -102,7 +102,7 @@ def _half_width(fit: Regression, added: Array) -> Array:
     total = own + np.diag(added)
     share = np.where(own > 0.0, own / np.where(total > 0.0, total, 1.0), 1.0)
     dof = fit.coloured.dof / share**2
-    out: Array = stats.t.ppf(0.975, dof) * np.sqrt(total)
+    out: Array = special.stdtrit(dof, 0.975) * np.sqrt(total)
     return out
 
 

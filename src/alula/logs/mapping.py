@@ -86,6 +86,15 @@ class LogMapping:
                 f"samples in {valid.sum()} of {len(valid)} rows",
                 "Taken at its own rate; empty rows are no samples.",
             )
+        if spec.repeats == "drop":
+            new = np.concatenate(([True], values[1:] != values[:-1]))
+            self._note(
+                "repeats_dropped",
+                name,
+                f"{len(new) - int(new.sum())} of {len(new)} samples equal to the one before",
+                "Taken for held values and left out, as the project asks.",
+            )
+            t, values = t[new], values[new]
         if spec.delay_s:
             t = t - spec.delay_s
         return Channel(name, t if t is base.t else frozen(t), frozen(values), unit.si, words)

@@ -172,7 +172,7 @@ def check(
                 problems.append(
                     Message(doubt.code, "error", where, doubt.expected, doubt.found, do)
                 )
-        messages += _resting(name, where, values)
+        messages += _resting(name, where, values) + _held(where, channel)
     problems += _times(log, specs, channels)
     for angle, rate in (("phi", "p"), ("theta", "q")):
         if angle in channels and rate in channels:
@@ -206,6 +206,25 @@ def _resting(name: str, where: str, values: Array) -> list[Message]:
             expected="values that change in flight",
             found=f"{values[0]:.6g} in all {len(values)} samples",
             do="The sensor may be dead; do not use it, or write constant = ... if it is one.",
+        )
+    ]
+
+
+def _held(where: str, channel: Channel) -> list[Message]:
+    """A slower sensor written at the log's rate: every value stands the same number of times."""
+    changes = np.flatnonzero(np.diff(channel.values)) + 1  # NaN counts as a change
+    if not 20 <= len(changes) <= 0.6 * len(channel.values):
+        return []
+    low, middle, high = np.quantile(np.diff(changes), (0.05, 0.5, 0.95))
+    if middle < 2 or high > 1.2 * low:
+        return []
+    return [
+        warn(
+            "held_values",
+            where=where,
+            expected="a new value in each sample",
+            found=f"a new value every {middle:g} samples, held between",
+            do="Write repeats = 'drop' for it, or each value counts as often as it is repeated.",
         )
     ]
 

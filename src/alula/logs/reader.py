@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
@@ -68,5 +70,7 @@ def read_tables(log: LogSpec) -> tuple[Tables, list[Message]]:
 
 
 def read_all(project: Project) -> dict[str, Flight]:
-    """Every log of a project, by id."""
-    return {log.id: read(log, project.channels_of(log)) for log in project.logs}
+    """Every log of a project, by id; decoders that run in a child process run side by side."""
+    with ThreadPoolExecutor(max_workers=os.cpu_count() or 1) as pool:
+        jobs = [pool.submit(read, log, project.channels_of(log)) for log in project.logs]
+        return {log.id: job.result() for log, job in zip(project.logs, jobs, strict=True)}

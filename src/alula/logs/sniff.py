@@ -48,12 +48,12 @@ def head(path: Path, count: int = 4096) -> bytes:
     try:
         with path.open("rb") as file:
             data = file.read(count)
-    except OSError as error:
+    except (OSError, ValueError) as error:
         raise refuse(
             "file_not_readable",
             where=str(path),
             expected="a log file",
-            found=error.strerror or str(error),
+            found=getattr(error, "strerror", None) or str(error),
             do="Check the path and the folder's permissions.",
         ) from None
     if not data:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.special import gammaincinv
 
 from alula.aircraft import Aircraft
 from alula.base.arrays import Array
@@ -77,7 +77,7 @@ def reconstruct(
             messages += compare_duplicates(flights[maneuver.log], maneuver)
     order = {m.id: i for i, m in enumerate(maneuvers)}
     count = max(readings, 1)
-    low, high = (float(chi2.ppf(x, count)) / count for x in (0.025, 0.975))
+    low, high = (2.0 * float(gammaincinv(count / 2.0, x)) / count for x in (0.025, 0.975))
     return Reconstruction(
         method=spec.filter,
         segments=tuple(sorted(segments, key=lambda s: order[s.maneuver.id])),

@@ -10,9 +10,9 @@ import numpy as np
 
 from alula.aircraft import Aircraft
 from alula.base.arrays import Array
+from alula.base.local_cubic import LocalCubic
 from alula.base.messages import Message, note, refuse, warn
 from alula.flight import Flight, Maneuver, Motion
-from alula.reconstruct.differentiate import differentiate
 from alula.reconstruct.record import channel_on
 from alula.reconstruct.transfer import (
     controls_on,
@@ -55,12 +55,12 @@ def recorded_motion(
         return np.zeros(len(t))
 
     rates = {name: get(name) for name in ("p", "q", "r")}
-    accelerations = {}
-    for name, rate in rates.items():
-        if f"{name}dot" in flight:
-            accelerations[f"{name}dot"] = channel_on(flight, f"{name}dot", t)
-        else:
-            accelerations[f"{name}dot"] = differentiate(t, rate, window_s).rates
+    given = all(f"{name}dot" in flight for name in rates)
+    cubic = LocalCubic(t, window_s)
+    accelerations = {
+        f"{name}dot": channel_on(flight, f"{name}dot", t) if given else cubic.derivative(rate)
+        for name, rate in rates.items()
+    }
     h = get("h")
     if "rho" in flight:
         rho = channel_on(flight, "rho", t)
@@ -89,6 +89,7 @@ def recorded_motion(
         controls=controls_on(flight, aircraft, t),
         thrust=thrust_on(flight, aircraft, t),
         fuel_used=fuel_on(flight, t),
+        window_s=0.0 if given else cubic.window_s,
         recorded=recorded_on(flight, t),
     )
     if missing:

@@ -11,9 +11,9 @@ import numpy as np
 
 from alula.aircraft import Aircraft
 from alula.base.arrays import Array
+from alula.base.local_cubic import LocalCubic
 from alula.core import core
 from alula.flight import Flight, Motion
-from alula.reconstruct.differentiate import differentiate
 from alula.reconstruct.problem import Problem
 from alula.reconstruct.record import Record, channel_on
 from alula.reconstruct.unknowns import INERTIAL, WIND
@@ -32,7 +32,7 @@ class Transfer:
         aircraft: Aircraft,
         window_s: float,
     ) -> None:
-        self.problem, self.record, self.window_s = problem, record, window_s
+        self.problem, self.record = problem, record
         t = record.t[record.base]
         fuel = fuel_on(flight, t)
         position = (
@@ -43,6 +43,7 @@ class Transfer:
         self.arm = position - problem.position
         self.still = not np.any(self.arm)
         self.t, self.maneuver = t, record.maneuver
+        self.cubic = LocalCubic(t, window_s)
         self.controls = controls_on(flight, aircraft, t)
         self.thrust = thrust_on(flight, aircraft, t)
         self.fuel_used = fuel
@@ -68,7 +69,7 @@ class Transfer:
         f, rates = true[:, :3], true[:, 3:]
         t = self.t
         accelerations = np.column_stack(
-            [differentiate(t, rates[:, i], self.window_s).rates for i in range(3)]
+            [self.cubic.derivative(np.ascontiguousarray(rates[:, i])) for i in range(3)]
         )
         phi, theta, psi = x[:, 4], x[:, 5], x[:, 6]
         v = x[:, 1:4] - rotate(phi, theta, psi, np.column_stack([unknown(n) for n in WIND]))
@@ -92,6 +93,7 @@ class Transfer:
             phi=phi, theta=theta, psi=psi, h=h,
             rho=standard_density(h) if self.rho is None else self.rho,
             controls=self.controls, thrust=self.thrust, fuel_used=self.fuel_used,
+            window_s=self.cubic.window_s,
             recorded=self.recorded,
         )  # fmt: skip
 

@@ -16,7 +16,7 @@ const AlulaPlot = (() => {
 
   class Plot {
     constructor(host, spec, times, link) {
-      Object.assign(this, { host, times, link, inView: true, drag: null, fixed: null });
+      Object.assign(this, { host, times, link, inView: false, drag: null, fixed: null });
       this.canvas = host.querySelector("canvas");
       this.live = host.querySelector(".live");
       this.panels = spec.panels.map((p) => ({

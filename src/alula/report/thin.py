@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -23,16 +22,17 @@ def kept_samples(
     n = len(columns[0])
     if n <= most:
         return None
-    per_stretch = 3 * len(columns)
-    stretches = max((most - 2) // per_stretch, 1)
-    edges = np.linspace(0, n, stretches + 1).astype(np.intp)
-    keep = {0, n - 1}
-    for low, high in pairwise(edges.tolist()):
-        for column in columns:
-            piece = column[low:high]
-            missing = np.isnan(piece)
-            if missing.any():
-                keep.add(int(low + np.argmax(missing)))
-            if not missing.all():
-                keep.update((int(low + np.nanargmin(piece)), int(low + np.nanargmax(piece))))
-    return np.array(sorted(keep), dtype=np.intp)
+    stretches = max((most - 2) // (3 * len(columns)), 1)
+    length = -(-n // stretches)
+    first = length * np.arange(-(-n // length))  # of each stretch
+    keep = [np.array([0, n - 1])]
+    for column in columns:
+        # the last stretch is filled up with its last value, which changes no extreme
+        pieces = np.pad(column, (0, length * len(first) - n), "edge").reshape(len(first), length)
+        missing = np.isnan(pieces)
+        keep += [
+            (first + np.argmin(np.where(missing, np.inf, pieces), axis=1))[~missing.all(axis=1)],
+            (first + np.argmax(np.where(missing, -np.inf, pieces), axis=1))[~missing.all(axis=1)],
+            (first + np.argmax(missing, axis=1))[missing.any(axis=1)],
+        ]
+    return np.unique(np.concatenate(keep)).astype(np.intp)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from alula.identify.result import Identification
 from alula.report.html import Html, escape, join, tag
 from alula.report.input import ReportInput
 from alula.report.names import WORDS
@@ -59,31 +60,7 @@ def reasons(report: ReportInput) -> list[Html]:
     found: list[Html] = []
     identification, reconstruction = report.identification, report.reconstruction
     if identification is not None:
-        for verdict_, start in (
-            ("not_identifiable", "Not identifiable, the data do not determine them: "),
-            ("weak", "Weak, the interval includes zero or the error is over half the value: "),
-        ):
-            names = [p.name for p in identification.parameters if p.verdict == verdict_]
-            if names:
-                codes = join(
-                    ", " if k % 2 else tag("code", names[k // 2]) for k in range(2 * len(names) - 1)
-                )
-                found.append(join([start, codes, "."]))
-        for fit in identification.fits.values():
-            words = f" ({WORDS[fit.coefficient]})" if fit.coefficient in WORDS else ""
-            held = (
-                f"R² {number(fit.r2_held_out, 3)} on {fit.n_held_out} samples held out of the fit"
-                if fit.n_held_out and math.isfinite(fit.r2_held_out)
-                else "no maneuver was held out, so the model is not validated on data it never saw"
-            )
-            found.append(
-                join(
-                    [
-                        tag("code", fit.coefficient),
-                        f"{words}: R² {number(fit.r2, 3)} on {fit.n} samples of the fit; {held}.",
-                    ]
-                )
-            )
+        found += _parameters(identification) + _fits(identification)
         if identification.status:
             found.append(escape(f"Identification: {identification.status}"))
     if reconstruction is not None:
@@ -105,6 +82,43 @@ def reasons(report: ReportInput) -> list[Html]:
         )
     )
     return found
+
+
+def _parameters(result: Identification) -> list[Html]:
+    """The parameters that are not resolved, by name."""
+    found = []
+    for verdict_, start in (
+        ("not_identifiable", "Not identifiable, the data do not determine them: "),
+        ("weak", "Weak, the interval includes zero or the error is over half the value: "),
+    ):
+        names = [tag("code", p.name) for p in result.parameters if p.verdict == verdict_]
+        if names:
+            found.append(_listed(start, names))
+    return found
+
+
+def _fits(result: Identification) -> list[Html]:
+    """How the models fit, how they predict, and which of them were never put to that test."""
+    fits = list(result.fits.values())
+    seen = [f for f in fits if f.n_held_out and math.isfinite(f.r2_held_out)]
+    found = [_listed("R² on the data of the fit: ", [_r2(f.coefficient, f.r2) for f in fits])]
+    if seen:
+        codes = [_r2(f.coefficient, f.r2_held_out) for f in seen]
+        found.append(_listed("R² on maneuvers that the fit never saw: ", codes))
+    codes = [tag("code", f.coefficient) for f in fits if f not in seen]
+    if codes:
+        found.append(_listed("Not validated, no maneuver was held out: ", codes))
+    return found if fits else []
+
+
+def _r2(name: str, value: float) -> Html:
+    words = f" ({WORDS[name]})" if name in WORDS else ""
+    return join([tag("code", name), f"{words} {number(value, 3)}"])
+
+
+def _listed(start: str, items: list[Html]) -> Html:
+    """'start a, b.'"""
+    return join([start, Html(", ".join(items)), "."])
 
 
 def _many(count: int, what: str) -> str:
