@@ -153,3 +153,11 @@ def test_ready_models_load() -> None:
     model = load_model(folder / "sportstar_aero.toml")
     assert model.params["CL_alpha"] == 5.0702
     assert set(model.assumed) < set(model.names)
+
+
+def test_the_documented_example_is_a_model(tmp_path: Path) -> None:
+    page = (Path(__file__).parents[2] / "docs" / "model_file.md").read_text()
+    (tmp_path / "m.toml").write_text(page.split("```toml\n")[1].split("```")[0])
+    model = load_model(tmp_path / "m.toml")
+    assert model.formulas["Cm"] == "1 + alpha + qhat + de + (alpha - 0.2)+^2"
+    assert model.assumed == ("CL_q",)
