@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from identify_flights import DT, N, maneuver
 
+from alula.base.local_cubic import LocalCubic
 from alula.identify import identify_equation_error
 from alula.identify.verdict import verdict
 
@@ -154,3 +155,14 @@ def test_noisy_regressor_is_said():
     result = identify("1 + alpha + qhat + de", item)
     assert "noisy_regressor" in [m.code for m in result.messages]
     assert "noisy_regressor" not in [m.code for m in identify("1+alpha+qhat+de").messages]
+
+
+def test_smoothing_does_not_make_noise_a_signal():
+    """The same standing control where moments and regressors have passed a low-pass."""
+    noise = 1e-3 * np.random.default_rng(6).standard_normal(N)
+    item = maneuver(da=noise)
+    cubic = LocalCubic(item.t, 0.3)
+    smooth = replace(item, cubic=cubic, coefficients={"Cm": cubic.matched(item.coefficients["Cm"])})
+    result = identify("1 + alpha + qhat + de + da", smooth)
+    assert result["Cm_da"].verdict == "not_identifiable"
+    assert [result[n].verdict for n in ("Cm_alpha", "Cm_q", "Cm_de")] == ["ok"] * 3

@@ -130,3 +130,8 @@ def test_gap_within_a_maneuver_is_said():
     result = identify_equation_error([replace(m, t=t)], {"Cm": "1 + alpha + qhat + de"})
     assert [x.code for x in result.messages] == ["uneven_time"]
     assert "2.02 s" in result.messages[0].found
+
+
+def test_unknown_weighting_is_refused():
+    with pytest.raises(BadInput, match="unknown_option"):
+        identify_equation_error([maneuver()], {"Cm": "1 + alpha"}, weighting="loudest")

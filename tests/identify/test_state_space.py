@@ -7,6 +7,7 @@ import pytest
 from scipy.linalg import expm
 from scipy.spatial.transform import Rotation
 
+from alula.base.local_cubic import LocalCubic
 from alula.base.messages import BadInput
 from alula.flight import Maneuver, Motion
 from alula.identify.state_space import identify_state_space, state_derivatives
@@ -70,10 +71,12 @@ def lateral(noise: float = 0.0, seed: int = 0) -> tuple[Motion, np.ndarray, np.n
     da = 0.1 * ((t > 1) & (t < 2)) - 0.1 * ((t > 2) & (t < 3))
     dr = 0.1 * ((t > 12) & (t < 13)) - 0.1 * ((t > 13) & (t < 14))
     u = np.column_stack([da, dr])
-    whole = expm(np.block([[a, b], [np.zeros((2, 6))]]) * 0.02)  # exact for held inputs
+    ramp = np.zeros((8, 8))  # exact for inputs that go straight from sample to sample
+    ramp[:4, :4], ramp[:4, 4:6], ramp[4:6, 6:] = a, b, np.eye(2) / 0.02
+    whole = expm(ramp * 0.02)[:4]
     x = np.zeros((len(t), 4))
     for i in range(len(t) - 1):
-        x[i + 1] = whole[:4, :4] @ x[i] + whole[:4, 4:] @ u[i]
+        x[i + 1] = whole @ np.concatenate([x[i], u[i], u[i + 1] - u[i]])
     rng = np.random.default_rng(seed)
     rate = x @ a.T + u @ b.T + noise * rng.standard_normal((len(t), 4))
     none = np.zeros_like(t)
@@ -126,3 +129,16 @@ def test_missing_control_and_no_motion_are_refused():
         identify_state_space([motion], "lateral", inputs=("da", "de"))
     with pytest.raises(BadInput, match="no_maneuver"):
         identify_state_space([], "lateral")
+
+
+def test_smoothed_accelerations_do_not_shrink_the_matrices():
+    """Angular accelerations differenced over a window: the rest must pass the same filter."""
+    motion, a, _ = lateral()
+    cubic = LocalCubic(motion.t, 0.4)
+    smoothed = replace(motion, pdot=cubic.derivative(motion.p), rdot=cubic.derivative(motion.r))
+    told = identify_state_space([replace(smoothed, window_s=cubic.window_s)], "lateral")
+    untold = identify_state_space([smoothed], "lateral")
+    assert abs(untold.A[1, 1] - a[1, 1]) > 0.05 * abs(a[1, 1])  # control: it would matter
+    # the filter's trapezoid against a roll time constant of ten samples
+    assert told.A[1, 1] == pytest.approx(a[1, 1], rel=0.01)
+    assert told.A[2, 0] == pytest.approx(a[2, 0], rel=0.01)

@@ -109,7 +109,7 @@ def _share_observed(covariance: Array, whole: Array) -> Array:
 
     What is put back is no observation of its own: were it known exactly, all degrees of freedom
     would count, were it not known at all, this share of them. The geometric mean, its square root,
-    makes intervals of constant terms cover 95 to 98 % (86 to 94 % without), of derivatives 93 to
+    makes intervals of constant terms cover 93 to 98 % (86 to 94 % without), of derivatives 93 to
     96 %, in Monte Carlo with correlation times of 0.05 to 1 s on maneuvers of 8 and 30 s.
     """
     seen, total = np.diag(covariance), np.diag(whole)

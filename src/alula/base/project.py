@@ -20,6 +20,7 @@ Repair = Literal["drop_duplicate_times", "drop_backward_times", "drop_ragged_row
 Format = Literal["auto", "csv", "ascii", "npz", "mat", "hdf5", "parquet"]
 Source = Annotated[int, Field(ge=1)] | Annotated[str, Field(min_length=1)]
 Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
+State = Literal["h", "u", "v", "w", "phi", "theta", "psi"]
 Identifier = Annotated[str, Field(pattern=r"^[\w][\w .+-]*$", max_length=80)]
 
 
@@ -182,6 +183,17 @@ class SensorSpec(Quantity):
         return None if self.sigma is None else self.in_si(self.sigma)
 
 
+class InitialSpec(Quantity):
+    """One motion state at the first sample of a maneuver."""
+
+    value: float
+
+    @property
+    def value_si(self) -> float:
+        """The value, SI."""
+        return self.in_si(self.value)
+
+
 class ReconstructSpec(Strict):
     """How the flight path is reconstructed."""
 
@@ -189,8 +201,11 @@ class ReconstructSpec(Strict):
     gravity: float = Field(default=9.80665, gt=0)
     share: Literal["all", "log", "maneuver"] = "all"
     initial_state: Literal["estimate", "measured"] = "estimate"
-    given: list[Literal["h", "u", "v", "w", "phi", "theta", "psi"]] = Field(
+    given: list[State] = Field(
         default=[], description="motion states taken as measured, not integrated (filter 'ml')"
+    )
+    initial: dict[str, dict[State, InitialSpec]] = Field(
+        default={}, description="by maneuver: motion states at its first sample, where known better"
     )
     smoothing_window_s: float = Field(default=0.0, ge=0, description="0: the method chooses")
     imu: dict[Literal["ax", "ay", "az", "p", "q", "r"], NoiseSpec] = {}
@@ -283,6 +298,16 @@ def _references(project: Project, path: Path) -> list[Message]:
     ):
         for id in sorted({id for id in ids if ids.count(id) > 1}):
             error("duplicate_id", key, "each id once", f"'{id}' {ids.count(id)} times", "Rename.")
+    planned = [maneuver.id for maneuver in project.maneuvers]
+    for id in project.reconstruct.initial:
+        if id not in planned:
+            error(
+                "unknown_maneuver",
+                f"reconstruct.initial.{id}",
+                f"one of {', '.join(planned) or 'the maneuvers, of which there are none'}",
+                f"'{id}'",
+                "Name a maneuver of this project.",
+            )
     known = [log.id for log in project.logs]
     for i, maneuver in enumerate(project.maneuvers):
         if maneuver.log not in known:

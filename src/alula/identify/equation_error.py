@@ -9,6 +9,7 @@ added.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -137,14 +138,21 @@ class _Task:
                 if way.source == source:
                     coefficients, variables = way.coefficients, way.variables
             measured = coefficients[self.coefficient]
-            matrix = self.terms_of(item, variables)
-            if self.split:
-                own = np.zeros((len(measured), len(self.learn)))
-                own[:, i] = 1.0
-                keep = [j for j, name in enumerate(self.terms) if name in self.shared]
-                matrix = np.hstack([own, matrix[:, keep]])
-            out.append(Block(matrix, measured))
+            matrix = self._spread(i, self.terms_of(item, variables))
+            sharp = None
+            if item.cubic is not None and source is None:
+                sharp = self._spread(i, self.terms_of(replace(item, cubic=None), variables))
+            out.append(Block(matrix, measured, sharp))
         return out
+
+    def _spread(self, i: int, matrix: Array) -> Array:
+        """Regressors (n, k) in the order of `names`, for maneuver i."""
+        if not self.split:
+            return matrix
+        own = np.zeros((len(matrix), len(self.learn)))
+        own[:, i] = 1.0
+        keep = [j for j, name in enumerate(self.terms) if name in self.shared]
+        return np.hstack([own, matrix[:, keep]])
 
 
 def _serving(data: Sequence[CoefficientData], coefficient: str) -> list[CoefficientData]:

@@ -95,7 +95,7 @@ def _noise_directions(fit: Regression, covariance: Array, free: list[int]) -> tu
     """
     centered, rough = [], []
     for weight, block in zip(fit.weights, fit.blocks, strict=True):
-        x = np.sqrt(weight) * block.regressors[:, free]
+        x = np.sqrt(weight) * block.unsmoothed[:, free]
         centered.append(x - x.mean(axis=0))
         rough.append(rough_part(x))
     moving = np.vstack(centered)

@@ -23,10 +23,19 @@ LARGEST_RATIO = 10.0  # of the maneuvers' residual variances, as weights see the
 
 @dataclass(frozen=True)
 class Block:
-    """One maneuver's share: regressors (n, k) and measured coefficient (n,)."""
+    """One maneuver's share: regressors (n, k) and measured coefficient (n,).
+
+    sharp: the regressors before any smoothing, where they passed one; noise is judged by these.
+    """
 
     regressors: Array
     measured: Array
+    sharp: Array | None = None
+
+    @property
+    def unsmoothed(self) -> Array:
+        """The regressors (n, k) as noisy as they were."""
+        return self.regressors if self.sharp is None else self.sharp
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,8 @@
 Dittrich 2016, Eq. (3.36) to (3.45). Derivatives of V, alpha, beta, theta and phi follow from
 specific force and rates by the kinematics (Eq. (2.61) and (2.62)), which is more exact than
 differentiating them; those of p, q, r come with the motion. Deviations count from each maneuver's
-own trim: every maneuver has its own constant.
+own trim: every maneuver has its own constant. Where angular accelerations were smoothed, all else
+passes the same filter, or A and B would come out too small.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from typing import Literal
 import numpy as np
 
 from alula.base.arrays import Array, frozen
+from alula.base.local_cubic import LocalCubic
 from alula.base.messages import Message, refuse
 from alula.flight import Motion
 from alula.identify.regression import Block, Weighting, regress
@@ -106,7 +108,7 @@ def identify_state_space(
         )
     states = STATES[axis]
     matrices = [_regressors(m, states, has) for m in motions]
-    derivatives = [state_derivatives(m, gravity) for m in motions]
+    derivatives = [_matched_derivatives(m, gravity) for m in motions]
     constants = [f"[{m.maneuver.id}]" for m in motions]
     parameters: list[Parameter] = []
     messages: list[Message] = []
@@ -150,7 +152,17 @@ def identify_state_space(
 
 def _regressors(motion: Motion, states: Sequence[str], inputs: Sequence[str]) -> Array:
     columns = [getattr(motion, s) for s in states] + [motion.controls[u] for u in inputs]
-    return np.column_stack(columns)
+    matrix = np.column_stack(columns)
+    return LocalCubic(motion.t, motion.window_s).matched(matrix) if motion.window_s else matrix
+
+
+def _matched_derivatives(motion: Motion, gravity: float) -> dict[str, Array]:
+    """Derivatives that have all passed the filter of the angular accelerations, if they did."""
+    exact = state_derivatives(motion, gravity)
+    if not motion.window_s:
+        return exact
+    cubic = LocalCubic(motion.t, motion.window_s)
+    return {name: x if name in _RATES else cubic.matched(x) for name, x in exact.items()}
 
 
 def _with_constant(matrix: Array, index: int, count: int) -> Array:

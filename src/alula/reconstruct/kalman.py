@@ -7,15 +7,17 @@ Source: van den Hoek 2017, Sec. 3; Dittrich 2016, Sec. 3.1.4; Rauch, Tung, Strie
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
 from alula.base.arrays import Array
 from alula.base.messages import BadInput, Message, refuse, warn
 from alula.core import core
+from alula.reconstruct.filter_colour import lift, white
 from alula.reconstruct.problem import Problem
 from alula.reconstruct.solution import RecordSolution, Solution
+from alula.reconstruct.tempering import MOST_PASSES, SETTLED, Start, nearer, restored
 
 
 def solve_ekf(problem: Problem) -> Solution:
@@ -28,7 +30,47 @@ def solve_ukf(problem: Problem) -> Solution:
     return _solve(problem, "ukf")
 
 
-def _solve(problem: Problem, method: Literal["ekf", "ukf"]) -> Solution:
+def filter_forward(
+    problem: Problem, method: Literal["ekf", "ukf"], picked: Array
+) -> tuple[Array, Array]:
+    """The filter without smoother: states (m, k) and covariances (m, k, k) given the readings so
+    far, at samples `picked` (m,) of all records in a row. Raises BadInput as the solvers do.
+    """
+    stated, used, _ = _settle(problem, method)
+    out, _, _ = _run(problem, method, used, smooth=False)
+    covariance = _unpack(out["covariance"][picked], out["x"].shape[1])
+    return restored(out["x"][picked], covariance, problem.motion, used, stated)
+
+
+def _settle(problem: Problem, method: Literal["ekf", "ukf"]) -> tuple[Start, Start, bool]:
+    """Stated start of the constants, the start near their estimates, and whether they settled."""
+    stated = Start(
+        np.array([u.value for u in problem.unknowns]), np.array([u.prior for u in problem.unknowns])
+    )
+    walks = np.array([u.walk > 0.0 for u in problem.unknowns], dtype=bool)
+    used, last = stated, stated.mean
+    for _ in range(MOST_PASSES if len(last) else 0):
+        out, _, _ = _run(problem, method, used, smooth=False, keep=False)
+        x, P = restored(out["x"][-1:], out["final_covariance"][None], problem.motion, used, stated)
+        now = x[0, problem.motion :]
+        se = np.sqrt(np.diagonal(P[0])[problem.motion :])
+        if np.all((np.abs(now - last) < SETTLED * se)[~walks]):
+            return stated, used, True
+        used, last = nearer(stated, now, se, walks), now
+    return stated, used, not len(last)
+
+
+def _run(
+    problem: Problem,
+    method: Literal["ekf", "ukf"],
+    constants: Start,
+    smooth: bool,
+    keep: bool = True,
+) -> tuple[dict[str, Any], list[int], Array]:
+    """What the core hands back, the records' lengths and first samples.
+
+    Raises BadInput where the filter loses its covariance.
+    """
     if any(held is not None for held in problem.held):
         raise refuse(
             "given_needs_ml",
@@ -37,33 +79,47 @@ def _solve(problem: Problem, method: Literal["ekf", "ukf"]) -> Solution:
             found=f'filter = "{method}"',
             do="Take the entry out: a filter weighs these channels as sensors.",
         )
-    model = problem.model()
     run = core.path_ekf if method == "ekf" else core.path_ukf
     lengths = [len(r.t) for r in problem.records]
     starts = np.concatenate([[0], np.cumsum(lengths)[:-1]]).astype(int)
     start = np.full(sum(lengths), -1, dtype=np.int32)
     start[starts] = np.arange(len(lengths))
     inputs = np.concatenate([r.inputs for r in problem.records])
-    n, motion = model.states, model.motion
-    prior = np.array([u.prior for u in problem.unknowns])
+    none = np.zeros(problem.motion)
     out = run(
-        model,
+        problem.model(),
         np.concatenate([r.t for r in problem.records]),
         inputs,
         np.concatenate([r.readings for r in problem.records]),
         start,
         problem.initial,
-        np.concatenate([np.zeros(motion), [u.value for u in problem.unknowns]]),
-        np.concatenate([np.zeros(motion), prior]),
-        smooth=True,
+        np.concatenate([none, constants.mean]),
+        np.concatenate([none, constants.deviation]),
+        smooth=smooth,
+        keep_covariance=keep,
     )
     if out["done"] < len(inputs) or out["reached"] > 0:
         raise _lost(problem, lengths, out["done"] if out["done"] < len(inputs) else out["reached"])
-    x, covariance = out["x"], _unpack(out["covariance"], n)
+    return out, lengths, starts
+
+
+def _solve(problem: Problem, method: Literal["ekf", "ukf"]) -> Solution:
+    stated, used, settled = _settle(problem, method)
+    out, lengths, starts = _run(problem, method, used, smooth=True)
+    model = problem.model()
+    inputs = np.concatenate([r.inputs for r in problem.records])
+    n, motion = model.states, model.motion
+    prior = stated.deviation
+    x, covariance = restored(out["x"], _unpack(out["covariance"], n), motion, used, stated)
+    walks = np.array([u.walk > 0.0 for u in problem.unknowns], dtype=bool)
     constants, constants_cov = _constants(problem, x, covariance, starts, lengths)
+    final = np.sqrt(np.diagonal(constants_cov))
+    raised = _lift(problem, out, starts, lengths, constants, final, prior, walks)
+    constants_cov = constants_cov * np.outer(raised, raised)
     se = np.sqrt(np.maximum(np.diagonal(covariance, axis1=1, axis2=2), 0.0))
     fitted = core.path_readings(model, inputs, np.ascontiguousarray(x))
-    doubt = _doubt(covariance, motion)
+    se[:, motion:] *= raised
+    doubt = _doubt(covariance, motion, raised)
     records = [
         RecordSolution(
             states=x[a:b],
@@ -76,9 +132,17 @@ def _solve(problem: Problem, method: Literal["ekf", "ukf"]) -> Solution:
         )
         for a, b in zip(starts, starts + lengths, strict=True)
     ]
-    walks = np.array([u.walk > 0.0 for u in problem.unknowns], dtype=bool)
-    final = np.sqrt(np.diagonal(constants_cov))
     messages: list[Message] = []
+    if not settled:
+        messages.append(
+            warn(
+                "not_settled",
+                where=f"filter {method}",
+                expected=f"passes that agree within {SETTLED:g} standard errors",
+                found=f"constants that still moved after {MOST_PASSES}",
+                do="Free fewer unknowns, narrow their priors, or compare with filter 'ml'.",
+            )
+        )
     if out["repairs"]:
         messages.append(
             warn(
@@ -137,7 +201,32 @@ def _constants(
     ]
 
 
-def _doubt(covariance: Array, motion: int) -> Array:
+def _lift(
+    problem: Problem,
+    out: dict[str, Any],
+    starts: Array,
+    lengths: list[int],
+    constants: Array,
+    se: Array,
+    prior: Array,
+    walks: np.ndarray,
+) -> Array:
+    """Factors on the constants' standard errors where the innovations are not white."""
+
+    def split(run: dict[str, Any]) -> list[Array]:
+        e = run["innovation"] / run["deviation"]
+        return [e[a:b] for a, b in zip(starts, starts + lengths, strict=True)]
+
+    if white(split(out)):
+        return np.ones(len(se))
+
+    def innovations(start: Start) -> list[Array]:
+        return split(_run(problem, "ekf", start, smooth=False, keep=False)[0])
+
+    return lift(innovations, constants, se, prior, np.flatnonzero(~walks).tolist())
+
+
+def _doubt(covariance: Array, motion: int, raised: Array) -> Array:
     """(d, n, k): the states' shift along each column of the unknowns' covariance factor.
 
     What is left of the motion's uncertainty when the unknowns are known is fresh noise at every
@@ -149,6 +238,7 @@ def _doubt(covariance: Array, motion: int) -> Array:
     constants = covariance[:, motion:, motion:]
     values, vectors = np.linalg.eigh(constants[n // 2])
     root = vectors * np.sqrt(np.maximum(values, 0.0))  # columns: one standard deviation each
+    root = raised[:, None] * root
     gain = np.linalg.solve(constants, covariance[:, motion:, :])  # (n, constants, k)
     out: Array = np.einsum("cd,nck->dnk", root, gain)
     return out

@@ -8,7 +8,7 @@ relative to the air mass otherwise, which is the same while the wind is steady.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,7 +20,7 @@ from alula.core import core
 from alula.flight import Flight, Maneuver
 from alula.reconstruct.record import Record, channel_on, make_record
 from alula.reconstruct.sensors import KINDS, Sensor, choose_sensors
-from alula.reconstruct.unknowns import COMMON, INERTIAL, Unknown, choose_unknowns
+from alula.reconstruct.unknowns import COMMON, INERTIAL, WIND, Unknown, choose_unknowns
 
 MOTION = ("h", "u", "v", "w", "phi", "theta", "psi", "north", "east")
 # Noise assumed of an inertial sensor that the project says nothing about, per sample.
@@ -43,6 +43,7 @@ class Problem:
     positions: tuple[Array, ...]  # of the sensors, from the inertial sensor
     gravity: float
     imu_sigma: Array
+    stated: bool  # whether the project states the first record's initial motion
     messages: tuple[Message, ...]
 
     @property
@@ -89,6 +90,13 @@ class Problem:
     def _reference(self, sensor: int) -> float:
         if self.sensors[sensor].reference == "zero":
             return 0.0
+        if self.stated:
+            bare = core.PathModel()
+            bare.motion = bare.states = bare.dynamic = self.motion
+            arm = [float(x) for x in self.positions[sensor]]
+            bare.add_sensor(KINDS[self.sensors[sensor].kind].quantity, arm, 1.0)
+            start = np.ascontiguousarray(self.initial[:1, : self.motion])
+            return float(core.path_readings(bare, self.records[0].inputs[:1], start)[0, 0])
         return _first(self.records[0].readings[:, sensor])
 
 
@@ -133,6 +141,7 @@ def make_problem(
         record, said = make_record(flights[maneuver.log], maneuver, sensors)
         records.append(record)
         messages += said
+    free = _windy_start(records[0], sensors, free, spec)
     position = aircraft.sensor_position("ax")
     problem = Problem(
         records=tuple(records),
@@ -140,7 +149,8 @@ def make_problem(
         unknowns=free,
         fixed=tuple(u for u in unknowns if not u.free),
         motion=motion,
-        initial=np.array([_initial(r, sensors, motion, free) for r in records]),
+        initial=np.array([_started(r, sensors, motion, free, spec) for r in records]),
+        stated=records[0].maneuver.id in spec.initial,
         held=tuple(_held(flights[r.maneuver.log], r, spec.given, motion) for r in records),
         position=position,
         positions=tuple(aircraft.sensor_position(s.channel) - position for s in sensors),
@@ -195,6 +205,46 @@ def _initial(
             x[i], sigma = first.get(name, (0.0, 100.0))
             sd[i] = 5.0 * sigma
     return np.concatenate([x, sd])
+
+
+def _started(
+    record: Record,
+    sensors: Sequence[Sensor],
+    motion: int,
+    free: Sequence[Unknown],
+    spec: ReconstructSpec,
+) -> Array:
+    """As `_initial`, with the values that the project states."""
+    out = _initial(record, sensors, motion, free)
+    for name, entry in spec.initial.get(record.maneuver.id, {}).items():
+        out[MOTION.index(name)] = entry.value_si
+    return out
+
+
+def _windy_start(
+    record: Record, sensors: Sequence[Sensor], free: tuple[Unknown, ...], spec: ReconstructSpec
+) -> tuple[Unknown, ...]:
+    """Wind by the first readings, where they tell it and the project does not.
+
+    Started from calm air the filters would take the drift for sideslip and angle of attack: their
+    first linearization then learns of sidewash and upwash what no reading ever told.
+    """
+    kinds = [s.kind.removesuffix("_linear") for s in sensors]
+    needed = ("v_north", "v_east", "v_down", "V", "phi", "theta", "psi")
+    if not all(name in kinds for name in needed):
+        return free
+    first = {kind: _first(record.readings[:, kinds.index(kind)]) for kind in kinds}
+    alpha, beta = first.get("alpha", first["theta"]), first.get("beta", 0.0)
+    v_B = first["V"] * np.array(
+        [np.cos(alpha) * np.cos(beta), np.sin(beta), np.sin(alpha) * np.cos(beta)]
+    )
+    v_E = np.array([first[name] for name in needed[:3]])
+    wind = v_E - _R_BE(first["phi"], first["theta"], first["psi"]).T @ v_B
+    guess = dict(zip(WIND, wind.tolist(), strict=True))
+    return tuple(
+        replace(u, value=guess[u.name]) if u.name in WIND and u.name not in spec.unknowns else u
+        for u in free
+    )
 
 
 def _R_BE(phi: float, theta: float, psi: float) -> Array:
