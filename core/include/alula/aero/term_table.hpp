@@ -11,7 +11,9 @@
 namespace alula {
 
 // Base variables, the first slots. Rates are pb/2V, qc/2V, rb/2V; angles rad; V m/s.
-enum Variable : int { kOne, kV, kAlpha, kBeta, kPhat, kQhat, kRhat, kDe, kDa, kDr, kDf, kDt, kMach };
+enum Variable : int {
+  kOne, kV, kAlpha, kBeta, kPhat, kQhat, kRhat, kDe, kDa, kDr, kDf, kDt, kMach
+};
 inline constexpr int kVariables = 13;
 
 // Body axes: CX CY CZ Cl Cm Cn. Stability axes: CD in the place of CX, CL in the place of CZ.
