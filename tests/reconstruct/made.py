@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -235,6 +234,3 @@ def constants(result: Reconstruction) -> dict[str, tuple[float, float]]:
 def replaced(flight: Flight, name: str, channel: Channel) -> Flight:
     """The flight with one channel changed or added."""
     return replace(flight, channels={**flight.channels, name: channel})
-
-
-HERE = Path(__file__).parent
