@@ -157,6 +157,38 @@ void bind_simulate(nb::module_& m) {
            "State rates dx (13) and outputs y (17) at one state and input.");
 
   m.def(
+      "quaternion_from_euler",
+      [](double phi, double theta, double psi, VectorOut out) {
+        if (out.shape(0) != 4) throw nb::value_error("out: expected four numbers");
+        const auto q = alula::quaternion_from_euler(phi, theta, psi);
+        out(0) = q.w;
+        out(1) = q.x;
+        out(2) = q.y;
+        out(3) = q.z;
+      },
+      nb::arg("phi"), nb::arg("theta"), nb::arg("psi"), nb::arg("out"),
+      "Quaternion (4,), scalar first, of Euler angles 3-2-1, rad.");
+  m.def(
+      "attitudes",
+      [](Matrix states, MatrixOut euler, CubeOut rotation) {
+        const std::size_t n = states.shape(0);
+        if (states.shape(1) != kStates || euler.shape(0) != n || euler.shape(1) != 3 ||
+            rotation.shape(0) != n || rotation.shape(1) != 3 || rotation.shape(2) != 3)
+          throw nb::value_error("expected states (n, 13), euler (n, 3), rotation (n, 3, 3)");
+        for (std::size_t i = 0; i < n; ++i) {
+          const alula::Quaternion<double> q{states(i, 3), states(i, 4), states(i, 5), states(i, 6)};
+          put(euler, i, alula::euler_from_quaternion(q));
+          const auto R = alula::earth_to_body(q);
+          for (std::size_t j = 0; j < 3; ++j) {
+            rotation(i, j, 0) = R.row[j].x;
+            rotation(i, j, 1) = R.row[j].y;
+            rotation(i, j, 2) = R.row[j].z;
+          }
+        }
+      },
+      nb::arg("states"), nb::arg("euler"), nb::arg("rotation"),
+      "Euler angles phi theta psi (n, 3), rad, and R_BE (n, 3, 3) of states (n, 13).");
+  m.def(
       "specific_force_at",
       [](Matrix f, Matrix w, Matrix w_dot, Vector r, MatrixOut out) {
         const Vec3<double> at = vec3(r, "r: expected three numbers");

@@ -1,6 +1,12 @@
-"""Tests import their helpers from this folder."""
+"""Tests import their helpers from this folder, and what `make verify` runs from benchmarks/."""
 
+import os
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parent))
+# One thread of linear algebra: the matrices are small, and tests may run side by side.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
+HERE = Path(__file__).parent
+sys.path[:0] = [str(HERE), str(HERE.parent / "benchmarks")]

@@ -268,11 +268,11 @@ def judge(outcomes: Mapping[str, Iterable[Outcome]]) -> Verdict:
                 hits.setdefault(name, []).append(abs(value - true) < 1.959964 * se)
                 errors.setdefault(name, []).append((value - true) / se)
             unobservable |= {f"{recording} {name}" for name in outcome.unobservable}
-        freedom = runs[0].freedom
-        average = np.mean([o.nees for o in runs], axis=0)[runs[0].times > 10.0]
-        low, high = chi2.ppf([0.025, 0.975], freedom * len(runs)) / len(runs)
-        inside[recording] = float(np.mean((average > low) & (average < high)))
-        ratio[recording] = float(np.mean(average) / freedom)
+        freedom = sum(o.freedom for o in runs)
+        total = np.sum([o.nees for o in runs], axis=0)[runs[0].times > 10.0]
+        low, high = chi2.ppf([0.025, 0.975], freedom)
+        inside[recording] = float(np.mean((total > low) & (total < high)))
+        ratio[recording] = float(np.mean(total) / freedom)
     pooled = [hit for each in hits.values() for hit in each]
     return Verdict(
         float(np.mean(pooled)),

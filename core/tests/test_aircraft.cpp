@@ -132,7 +132,7 @@ TEST(Aircraft, DualSlopesMatchDifferences) {
     alula::BodyState<D> xd;
     for (unsigned i = 0; i < 13; ++i) {
       xd[i] = D(x[i]);
-      if (i >= first && i < first + 8) xd[i].set_slope(i - first, 1.0);
+      if (i >= first && i < first + 8) xd[i] = D::variable(x[i], static_cast<int>(i - first));
     }
     const auto rate = alula::derivative(0.0, xd, ud, a);
     for (unsigned j = first; j < 13 && j < first + 8; ++j) {
@@ -142,7 +142,8 @@ TEST(Aircraft, DualSlopesMatchDifferences) {
       down[j] -= h;
       const auto fu = alula::derivative(0.0, up, u, a), fd = alula::derivative(0.0, down, u, a);
       for (unsigned i = 0; i < 13; ++i)  // central differences: h^2 and rounding / h
-        EXPECT_NEAR(rate[i].slope_of(j - first), (fu[i] - fd[i]) / (2 * h), 2e-6) << i << " " << j;
+        EXPECT_NEAR(rate[i].slope_of(static_cast<int>(j - first)), (fu[i] - fd[i]) / (2 * h), 2e-6)
+            << i << " " << j;
     }
   }
 }

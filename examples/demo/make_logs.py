@@ -42,6 +42,7 @@ HERE = Path(__file__).resolve().parent
 AIRCRAFT = HERE.parents[1] / "aircraft"
 RATE = 100.0  # Hz
 AIRSPEED, HEIGHT = 45.0, 914.4  # m/s; m (3000 ft)
+RAMP = 0.3  # s, of a pilot's hand
 WIND = (4.0, -3.0, 0.0)  # m/s NED, the way it blows to
 DEG = np.pi / 180.0
 
@@ -87,21 +88,21 @@ def maneuvers() -> dict[str, tuple[Maneuver, dict[str, Signal]]]:
     """The maneuvers by id, and the control deflections (rad) that are added to the trim."""
     elevator = Sum(
         (
-            input_3211(-2.0 * DEG, start=1.5, unit=0.45, ramp=0.1),
-            doublet(2.0 * DEG, start=9.0, width=0.6, ramp=0.1),
-            doublet(-3.0 * DEG, start=14.0, width=0.35, ramp=0.1),
+            input_3211(-2.0 * DEG, start=1.5, unit=0.45, ramp=RAMP),
+            doublet(2.0 * DEG, start=9.0, width=0.6, ramp=RAMP),
+            doublet(-3.0 * DEG, start=14.0, width=0.45, ramp=RAMP),
         )
     )
     aileron = Sum(
         (
-            bank_to_bank(-8.0 * DEG, start=1.5, width=0.8, hold=0.8, ramp=0.1),
-            doublet(8.0 * DEG, start=21.5, width=0.3, ramp=0.1),
+            bank_to_bank(-8.0 * DEG, start=1.5, width=0.8, hold=0.8, ramp=RAMP),
+            doublet(8.0 * DEG, start=21.0, width=0.45, ramp=RAMP),
         )
     )
     rudder = Sum(
         (
-            doublet(5.0 * DEG, start=10.0, width=1.0, ramp=0.1),
-            doublet(-5.0 * DEG, start=16.0, width=0.7, ramp=0.1),
+            doublet(4.5 * DEG, start=10.0, width=1.0, ramp=RAMP),
+            doublet(-4.5 * DEG, start=16.0, width=0.7, ramp=RAMP),
         )
     )
     return {

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -167,7 +166,7 @@ def _position(psi0: float, steady: bool, end: float):  # type: ignore[no-untyped
 
     def rate(t: float, _: Array) -> Array:
         at = np.array([t])
-        return (R_BE(*motion.attitude(at).T)[0].T @ motion.velocity(at)[0])
+        return R_BE(*motion.attitude(at).T)[0].T @ motion.velocity(at)[0]
 
     return solve_ivp(rate, (-2.0, end), np.zeros(3), rtol=1e-9, atol=1e-7, dense_output=True).sol
 
@@ -221,7 +220,9 @@ def solve(
     made, truth = record(recipe, seed)
     flight = flight or made
     maneuver = Maneuver("m", flight.id, "", 0.0, recipe.duration)
-    result = reconstruct({flight.id: flight}, [maneuver], aircraft(recipe), spec(recipe.sensors, **more))  # noqa: E501
+    result = reconstruct(
+        {flight.id: flight}, [maneuver], aircraft(recipe), spec(recipe.sensors, **more)
+    )
     return result, truth
 
 
@@ -233,6 +234,3 @@ def constants(result: Reconstruction) -> dict[str, tuple[float, float]]:
 def replaced(flight: Flight, name: str, channel: Channel) -> Flight:
     """The flight with one channel changed or added."""
     return replace(flight, channels={**flight.channels, name: channel})
-
-
-HERE = Path(__file__).parent

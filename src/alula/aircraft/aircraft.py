@@ -129,8 +129,12 @@ class Aircraft:
         for name, position in self.sensors.items():
             rows[f"Sensor {name}"] = _vector(position)
         for engine in self.engines:
-            thrust = f"{engine.thrust:.5g} N" if engine.channel is None else engine.channel
-            rows[f"Engine {engine.name}"] = f"thrust {thrust} at {_vector(engine.position)}"
+            thrust = (
+                f"thrust {engine.thrust:.5g} N"
+                if engine.channel is None
+                else f"thrust by channel '{engine.channel}'"
+            )
+            rows[f"Engine {engine.name}"] = f"{thrust}, at {_vector(engine.position)}"
         if self.assumed:
             rows["Assumed, not measured"] = ", ".join(self.assumed)
         return rows

@@ -41,7 +41,8 @@ def versions() -> dict[str, str]:
 def commit() -> str | None:
     """The checkout's commit where Alula runs from one, with '+' for uncommitted changes."""
     folder = Path(alula.__file__).parent
-    if not any((parent / ".git").exists() for parent in folder.parents):
+    # Another repository may lie around an installed Alula; its commit says nothing.
+    if not (folder.parents[1] / ".git").exists():
         return None
     try:
         found = subprocess.run(

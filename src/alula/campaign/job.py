@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
-from alula.aircraft import Aircraft, control_sign_check, load_aircraft
+from alula.aircraft import Aircraft
 from alula.base.messages import Message, note, refuse
-from alula.base.project import Project, load_project
+from alula.base.project import Project
 from alula.base.provenance import provenance
-from alula.flight import Flight, Maneuver, Motion
+from alula.campaign.check import Checked, Progress, check_project
+from alula.flight import Flight, Maneuver
 from alula.identify import (
     CoefficientData,
     Identification,
@@ -23,33 +25,10 @@ from alula.identify import (
     coefficients_from_motion,
     identify_equation_error,
 )
-from alula.logs.card import LogCard, log_card
-from alula.logs.maneuvers import maneuvers
-from alula.logs.reader import read_all
+from alula.identify.equation_error import LONGITUDINAL
 from alula.reconstruct import Reconstruction, Segment, reconstruct
-from alula.reconstruct.recorded import recorded_motion
 from alula.reconstruct.transfer import engines_on
 from alula.report import ReportInput
-
-Progress = Callable[[str], None]
-
-
-@dataclass(frozen=True)
-class Checked:
-    """A project's logs, read and looked through."""
-
-    project: Project
-    aircraft: Aircraft
-    flights: Mapping[str, Flight]
-    maneuvers: tuple[Maneuver, ...]
-    cards: tuple[LogCard, ...]
-    messages: tuple[Message, ...]  # beyond those of the cards
-
-    def all_messages(self) -> tuple[Message, ...]:
-        """Those of the logs and those of the project, each once."""
-        return tuple(
-            dict.fromkeys([m for card in self.cards for m in card.messages] + list(self.messages))
-        )
 
 
 @dataclass(frozen=True)
@@ -61,6 +40,7 @@ class Job:
     data: tuple[CoefficientData, ...]
     identification: Identification
     seconds: Mapping[str, float]
+    messages: tuple[Message, ...] = ()  # beyond those of the stages
 
     def all_messages(self) -> tuple[Message, ...]:
         """The messages of every stage, each once, in the order in which they arose."""
@@ -68,35 +48,9 @@ class Job:
             *self.checked.all_messages(),
             *self.reconstruction.messages,
             *self.identification.messages,
+            *self.messages,
         ]
         return tuple(dict.fromkeys(found))
-
-
-def check_project(
-    path: str, only: Sequence[str] = (), progress: Progress = lambda _: None
-) -> Checked:
-    """Read everything a project names and look through it. only: maneuver ids, all if empty.
-
-    Raises BadInput, with every message there is, for what cannot be used.
-    """
-    project = load_project(path)
-    _known(project, only)
-    if project.aircraft is None:
-        raise refuse(
-            "missing_aircraft",
-            where=f"{path}: aircraft",
-            expected="the path of an aircraft file",
-            found="none",
-            do='Add aircraft = "my_aircraft.toml".',
-        )
-    aircraft = load_aircraft(project.aircraft)
-    progress("reading logs")
-    flights = read_all(project)
-    found, said = maneuvers(project, flights)
-    chosen = tuple(m for m in found if not only or m.id.split(".")[0] in only or m.id in only)
-    messages = [*aircraft.messages, *said, *_signs(flights, chosen, aircraft)]
-    cards = tuple(log_card(flight, found) for flight in flights.values())
-    return Checked(project, aircraft, flights, chosen, cards, tuple(messages))
 
 
 def run_project(
@@ -112,10 +66,11 @@ def run_project(
 
     Raises BadInput for what cannot be used.
     """
-    clock = {"start": time.perf_counter()}
+    stamps = [time.perf_counter()]
     checked = check_project(path, only, progress)
     project = checked.project
-    clock["read"] = time.perf_counter()
+    identifier = IDENTIFIERS[_method(method or project.identify.method)]
+    stamps.append(time.perf_counter())
     if not checked.maneuvers:
         raise refuse(
             "no_maneuver",
@@ -131,19 +86,18 @@ def run_project(
     reconstruction = reconstruct(
         checked.flights, checked.maneuvers, checked.aircraft, spec, progress
     )
-    clock["reconstruct"] = time.perf_counter()
+    stamps.append(time.perf_counter())
     progress("identifying")
-    identifier = IDENTIFIERS[_method(method or project.identify.method)]
-    models = _models(project, checked.maneuvers)
+    models, messages = _models(project, checked.maneuvers)
     data: tuple[CoefficientData, ...] = ()
     identification = NOTHING_ASKED
     if models:
         data = coefficient_data(checked, reconstruction, shared=spec.share == "all")
         identification = identifier(data, models, project.identify.options, truth)
-    clock["identify"] = time.perf_counter()
-    stamps = list(clock.values())
-    seconds = {name: b - a for name, a, b in zip(list(clock)[1:], stamps, stamps[1:], strict=False)}
-    return Job(checked, reconstruction, data, identification, seconds)
+    stamps.append(time.perf_counter())
+    stages = ("read", "reconstruct", "identify")
+    seconds = {name: b - a for name, (a, b) in zip(stages, pairwise(stamps), strict=True)}
+    return Job(checked, reconstruction, data, identification, seconds, messages)
 
 
 def coefficient_data(
@@ -198,7 +152,7 @@ def report_of(job: Job, date: str, seed: int | None) -> ReportInput:
         maneuvers=checked.maneuvers,
         reconstruction=job.reconstruction,
         identification=job.identification,
-        messages=checked.messages,
+        messages=(*checked.messages, *job.messages),
         provenance={
             **provenance(seed),
             "project": checked.project.sha256,
@@ -222,6 +176,19 @@ def _equation_error(
             found=", ".join(sorted(options.keys() - known)),
             do="Take the entry out.",
         )
+    for name, kind, wanted in (
+        ("weighting", str, "text"),
+        ("common_constant", bool, "true or false"),
+        ("scales", Mapping, "a table of numbers"),
+    ):
+        if name in options and not isinstance(options[name], kind):
+            raise refuse(
+                "bad_option",
+                where=f"identify.options.{name}",
+                expected=wanted,
+                found=repr(options[name]),
+                do="Correct it.",
+            )
     return identify_equation_error(data, models, **options, truth=truth)
 
 
@@ -263,59 +230,25 @@ def _method(name: str) -> str:
     )
 
 
-def _models(project: Project, chosen: Sequence[Maneuver]) -> dict[str, str]:
-    """The project's models, less those that none of the chosen maneuvers serves."""
+def _models(
+    project: Project, chosen: Sequence[Maneuver]
+) -> tuple[dict[str, str], tuple[Message, ...]]:
+    """The project's models, less those that none of the chosen maneuvers serves; these are said."""
     aspects = {m.aspect for m in chosen if not m.held_out}
-    longitudinal = bool(aspects & {"longitudinal", "both"})
-    lateral = bool(aspects & {"lateral", "both"})
+    asked = project.identify.models
     served = {
         name: formula
-        for name, formula in project.identify.models.items()
-        if (lateral if name in ("CY", "Cl", "Cn") else longitudinal)
+        for name, formula in asked.items()
+        if aspects & {"both", "longitudinal" if name in LONGITUDINAL else "lateral"}
     }
-    return served or dict(project.identify.models)
-
-
-def _known(project: Project, only: Sequence[str]) -> None:
-    known = [m.id for m in project.maneuvers]
-    for id in only:
-        if id.split(".")[0] not in known and id not in known:
-            raise refuse(
-                "unknown_maneuver",
-                where="--maneuver",
-                expected="one of " + ", ".join(known),
-                found=f"'{id}'",
-                do="Name a maneuver of the project file.",
-            )
-
-
-def _signs(
-    flights: Mapping[str, Flight], chosen: Sequence[Maneuver], aircraft: Aircraft
-) -> list[Message]:
-    """Control senses: what was turned round, and what contradicts the motion."""
-    out = [
-        note(
-            "control_turned",
-            where=f"channel {name}",
-            expected="Alula's sense: a positive deflection gives a negative moment",
-            found="the opposite one, by the aircraft file's sign",
-            do="Nothing: the channel is multiplied by -1.",
-        )
-        for name, sign in aircraft.control_signs.items()
-        if sign < 0 and any(name in f for f in flights.values())
-    ]
-    for maneuver in chosen:
-        flight = flights[maneuver.log]
-        if "V" not in flight or "alpha" not in flight:
-            continue
-        motion, _ = recorded_motion(flight, maneuver, aircraft, 0.0)
-        if len(motion.t) < 20:
-            continue
-        for message in control_sign_check(_plain(motion), motion.dt):
-            out.append(replace(message, where=f"maneuver {maneuver.id}, {message.where}"))
-    return out
-
-
-def _plain(motion: Motion) -> dict[str, Any]:
-    names = ("alpha", "beta", "p", "q", "r", "pdot", "qdot", "rdot")
-    return {**{n: getattr(motion, n) for n in names}, **motion.controls}
+    if not served or len(served) == len(asked):  # with none, the identification refuses
+        return dict(asked), ()
+    left = [name for name in asked if name not in served]
+    said = note(
+        "model_not_served",
+        where="[identify.models]",
+        expected="a maneuver to learn from for every model",
+        found=f"none for {', '.join(left)} among {', '.join(m.id for m in chosen)}",
+        do="Nothing: these are left out. Add a maneuver of their aspect to identify them.",
+    )
+    return served, (said,)

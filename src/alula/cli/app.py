@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+import sys
+from collections.abc import Sequence
+from typing import NoReturn
+
 import typer
 
+from alula.base.messages import refuse
 from alula.cli.check import check
+from alula.cli.contract import Command
 from alula.cli.identify import identify
 from alula.cli.new import new
 from alula.cli.schema import schema
@@ -19,6 +25,10 @@ app = typer.Typer(
 )
 for command in (new, check, identify, schema):
     app.command()(command)
+
+
+# Not exported under its own name; typer brings its own click.
+_UsageError: type[Exception] = typer.BadParameter.__mro__[1]
 
 
 def _version(wanted: bool) -> None:
@@ -41,6 +51,34 @@ def _options(
     """
 
 
-def main() -> None:
-    """Entry point of the installed command."""
-    app()
+def main(arguments: Sequence[str] | None = None) -> NoReturn:
+    """Entry point of the installed command; arguments: instead of sys.argv's."""
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    try:
+        code = app(words, prog_name="alula", standalone_mode=False) or 0
+    except _UsageError as error:
+        if not words:  # what it carries is the help
+            typer.echo(str(error), err=True)
+            sys.exit(2)
+        code = _usage(words, error)
+    sys.exit(code)
+
+
+def _usage(words: Sequence[str], error: Exception) -> int:
+    """A command line that cannot be read ends as other bad input does, envelope and all."""
+    json = ""
+    for word, following in zip(words, [*words[1:], ""], strict=True):
+        if word == "--json" or word.startswith("--json="):
+            json = word.partition("=")[2] or following
+    said = getattr(error, "format_message", error.__str__)()
+    try:
+        with Command("usage", json).run():
+            raise refuse(
+                "usage",
+                where="alula " + " ".join(words),
+                expected="a command with its arguments and options",
+                found=said.replace("Value error, ", "").rstrip("."),
+                do="alula --help and alula COMMAND --help list them.",
+            )
+    except typer.Exit as end:
+        return end.exit_code

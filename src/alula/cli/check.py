@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -15,7 +16,8 @@ from alula.cli.contract import (
     ThreadsOption,
 )
 
-_FAILED = ("control_sign",)  # beginnings of codes after which a result would be wrong
+if TYPE_CHECKING:
+    from alula.campaign import Checked
 
 
 def check(
@@ -37,17 +39,23 @@ def check(
         command.messages = checked.all_messages()
         command.inputs = [f for card in checked.cards for f in card.files]
         command.result = {"logs": [card.as_dict() for card in checked.cards]}
-        if any(m.code.startswith(_FAILED) for m in command.messages):
+        if checked.failed:
             command.status = "check_failed"
         if command.talks:
-            from rich.console import Console
+            command.say(_text(checked, notes=not quiet))
 
-            from alula.logs.card_view import card_view
 
-            console = Console()
-            for card in checked.cards:
-                console.print(card_view(card))
-            if not quiet:
-                for message in command.messages:
-                    if message.level == "info":
-                        console.print(f"note: {message}", style="dim", markup=False)
+def _text(checked: Checked, notes: bool) -> str:
+    """The cards as tables, and what was noted; warnings go to stderr as in every command."""
+    from rich.console import Console
+
+    from alula.logs.card_view import card_view
+
+    console = Console()
+    with console.capture() as text:
+        for card in checked.cards:
+            console.print(card_view(replace(card, messages=())))
+        for message in checked.all_messages() if notes else ():
+            if message.level == "info":
+                console.print(f"note: {message}", style="dim", markup=False, highlight=False)
+    return text.get().rstrip("\n")

@@ -20,6 +20,7 @@ from alula.base.messages import BadInput, Message, refuse
 if TYPE_CHECKING:
     from alula.flight import SourceFile
 
+Kind = Literal["", "report", "model", "json"]
 Status = Literal["ok", "not_identifiable", "check_failed", "bad_input"]
 EXIT: Mapping[Status, int] = {"ok": 0, "not_identifiable": 1, "check_failed": 1, "bad_input": 2}
 
@@ -30,7 +31,9 @@ SeedOption = Annotated[int | None, typer.Option("--seed", help="Seed of anything
 ThreadsOption = Annotated[
     int, typer.Option("--threads", min=0, help="Threads to use; 0 leaves it to the libraries.")
 ]
-QuietOption = Annotated[bool, typer.Option("--quiet", help="No progress and no notes.")]
+QuietOption = Annotated[
+    bool, typer.Option("--quiet", help="No progress and no notes; warnings stay.")
+]
 
 
 @dataclass
@@ -62,7 +65,7 @@ class Command:
     def say(self, text: str) -> None:
         """Text for people, on stdout; nothing where stdout is JSON."""
         if self.talks:
-            typer.echo(text)
+            _out(text + "\n")
 
     @contextmanager
     def run(self) -> Iterator[None]:
@@ -72,7 +75,7 @@ class Command:
                 os.environ[name] = str(self.threads)
         try:
             if self.json and self.talks:
-                writable(Path(self.json))
+                writable(Path(self.json), "json")
             yield
         except BadInput as error:
             self.status, self.messages = "bad_input", error.messages
@@ -80,9 +83,9 @@ class Command:
         self._finish()
 
     def _finish(self) -> None:
-        shown = [m for m in self.messages if m.level != "info" or self.status == "bad_input"]
-        for message in shown if not self.quiet or self.status == "bad_input" else []:
-            typer.echo(f"{message.level}: {message}", err=True)
+        for message in self.messages:
+            if message.level != "info" or self.status == "bad_input":
+                typer.echo(f"{message.level}: {message}", err=True)
         if self.json:
             try:
                 self._write(json.dumps(self._envelope(), indent=1, allow_nan=False) + "\n")
@@ -97,7 +100,7 @@ class Command:
 
             write_whole(Path(self.json), text)
         else:
-            sys.stdout.write(text)
+            _out(text)
 
     def _envelope(self) -> dict[str, Any]:
         from alula.base.provenance import provenance
@@ -140,6 +143,16 @@ class Command:
         }
 
 
+def _out(text: str) -> None:
+    """Text to stdout. A reader who has seen enough (`| head`) ends the text, not the command."""
+    try:
+        sys.stdout.write(text)
+        sys.stdout.flush()
+    except BrokenPipeError:
+        # What is still in the buffer would complain once more when Python closes it.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
 def finite(value: Any, where: str, lost: list[str]) -> Any:
     """The value with every number that is not finite replaced by None; its place goes to `lost`."""
     if isinstance(value, Mapping):
@@ -152,18 +165,33 @@ def finite(value: Any, where: str, lost: list[str]) -> Any:
     return value
 
 
-def writable(path: Path) -> None:
-    """Raise BadInput at once if a file could not be written there after the work is done."""
+def writable(path: Path, kind: Kind = "") -> None:
+    """Raise BadInput at once if a file could not be written there after the work is done.
+
+    kind: of what Alula writes. A file that is there already is replaced only if it is of that
+    kind: a slip in the options must not cost a log.
+    """
     folder = path.absolute().parent
-    if path.is_dir() or not folder.is_dir() or not os.access(folder, os.W_OK):
-        raise refuse(
-            "output_not_writable",
-            where=str(path),
-            expected="a file name in a folder that exists and can be written to",
-            found="a folder"
-            if path.is_dir()
-            else "a folder without write permission"
-            if folder.is_dir()
-            else f"no folder {folder}",
-            do="Choose another path; nothing was done yet.",
-        )
+    expected, do = "", "Choose another path; nothing was done yet."
+    if not folder.is_dir() or not os.access(folder, os.W_OK):
+        expected = "a file name in a folder that exists and can be written to"
+        found = f"no {'permission to write to ' if folder.is_dir() else ''}folder {folder}"
+    elif path.is_dir():
+        expected, found = "the name of a file", "a folder"
+    elif path.exists() and not path.is_file():
+        expected, found = "the name of a file", "a device"
+        do = "Choose another path; --json - writes to stdout."
+    elif path.exists() and kind and not _is_own(path, kind):
+        expected, found = f"a free name, or a {kind} of Alula's to replace", "another kind of file"
+    if expected:
+        raise refuse("output_not_writable", where=str(path), expected=expected, found=found, do=do)
+
+
+def _is_own(path: Path, kind: str) -> bool:
+    marks = {"report": b'content="Alula"', "model": b"alula.model/", "json": b'"schema": "alula.'}
+    try:
+        with path.open("rb") as file:
+            head = file.read(2048)
+    except OSError:
+        return False
+    return not head or marks[kind] in head

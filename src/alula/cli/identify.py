@@ -61,9 +61,10 @@ def identify(
     """
     command = Command("identification", json, seed, threads, quiet)
     with command.run():
-        for path in (report, model):
-            if path is not None:
-                writable(path)
+        if report is not None:
+            writable(report, "report")
+        if model is not None:
+            writable(model, "model")
         from alula.campaign import run_project
 
         job = run_project(
@@ -80,13 +81,16 @@ def identify(
         command.result = result_of(job)
         if not job.identification.identifiable:
             command.status = "not_identifiable"
-        elif not job.reconstruction.converged:
+        elif job.checked.failed or not job.reconstruction.converged:
             command.status = "check_failed"
-        command.say(text_of(job))
         if model is not None:
             _write_model(job, model, command)
         if report is not None:
             _write_report(job, report, command)
+        command.say(text_of(job))
+        for label, path in (("Model", model), ("Report", report)):
+            if path is not None:
+                command.say(f"\n{label}: {path}")
 
 
 def result_of(job: Job) -> dict[str, Any]:
@@ -211,7 +215,6 @@ def _write_report(job: Job, path: Path, command: Command) -> None:
     command.progress("writing the report")
     date = datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC")
     write_whole(path, render(report_of(job, date, command.seed)))
-    command.say(f"\nReport: {path}")
 
 
 def _write_model(job: Job, path: Path, command: Command) -> None:
@@ -232,4 +235,3 @@ def _write_model(job: Job, path: Path, command: Command) -> None:
         },
     )
     save_model(made, path)
-    command.say(f"\nModel: {path}")

@@ -31,22 +31,22 @@ def new(
 
     Guesses are marked: confirm them before you believe a result.
     """
-    command = Command("project", json, seed, threads, quiet)
+    command = Command("new", json, seed, threads, quiet)
     with command.run():
         from alula.base.files import write_whole
         from alula.base.messages import refuse
         from alula.logs.guess import new_project
 
         path = output or Path(log.name).with_suffix(".toml")
-        writable(path)
         if path.exists():
             raise refuse(
                 "file_exists",
                 where=str(path),
                 expected="a name that is free",
-                found="a file",
+                found="a folder" if path.is_dir() else "a file",
                 do="Choose another with --output; nothing is overwritten.",
             )
+        writable(path)
         command.progress(f"looking at {log}")
         write_whole(path, new_project(log, path.absolute().parent))
         command.result = {"project": str(path)}

@@ -24,6 +24,11 @@ def summary(result: Identification) -> str:
     lines += ["-" * _WIDTH, _header(result), "-" * _WIDTH]
     lines += [_row(p) for p in result.parameters]
     lines += ["=" * _WIDTH, result.status]
+    unseen = [name for name, fit in result.fits.items() if not fit.n_held_out]
+    if unseen:
+        lines.append(
+            f"not validated: {', '.join(unseen)}: no maneuver is held out, so R2 tells the fit only"
+        )
     lines.append(
         "se: coloured residuals and the uncertainty of what came before; se white: as if residuals "
         "were white;\nthe interval takes Student's t with the degrees of freedom of coloured "

@@ -73,20 +73,19 @@ def to_table(model: AeroModel) -> Any:
     )
 
 
-def columns(variables: Mapping[str, Array]) -> Array:
-    """Variables (n,) by name as the core's matrix (n, 13); those not given are zero."""
-    n = len(next(iter(variables.values())))
-    out = np.zeros((n, 1 + len(VARIABLES)))
-    out[:, 0] = 1.0
+def evaluate_in_core(model: AeroModel, variables: Mapping[str, Array]) -> dict[str, Array]:
+    """The coefficients (n,) as the core computes them, by name; see `AeroModel.evaluate`.
+
+    A variable of the model that is missing is refused.
+    """
+    for _, term in model.terms:
+        for factor in term.factors:
+            factor.values(variables)  # refuses what is missing
+    rows = np.zeros((len(next(iter(variables.values()))), 1 + len(VARIABLES)))
+    rows[:, 0] = 1.0
     for j, name in enumerate(VARIABLES, start=1):
         if name in variables:
-            out[:, j] = variables[name]
-    return out
-
-
-def evaluate_in_core(model: AeroModel, variables: Mapping[str, Array]) -> dict[str, Array]:
-    """The coefficients (n,) as the core computes them, by name; see `AeroModel.evaluate`."""
-    rows = columns(variables)
+            rows[:, j] = variables[name]
     out = np.empty((len(rows), 6))
     to_table(model).evaluate(model.values, rows, out)
     return dict(zip(AXES[model.axes], out.T, strict=True))

@@ -150,8 +150,10 @@ def _skews(problem: Problem, solution: Solution) -> list[Message]:
                     "time_skew",
                     where=f"channel {skew.channel}",
                     expected="stamps in step with the inertial sensor's",
-                    found=f"{skew.delay_s:+.3f} s late, standard error {skew.se:.3f} s",
-                    do=f"If the recorder explains it, add delay_s = {skew.delay_s:.3f}.",
+                    found=f"{abs(skew.delay_s):.3f} s {'late' if skew.delay_s > 0 else 'early'}, "
+                    f"standard error {skew.se:.3f} s",
+                    do=f"If the recorder explains it, add delay_s = {skew.delay_s:.3f} to the "
+                    "channel.",
                 )
             )
         else:
@@ -161,7 +163,7 @@ def _skews(problem: Problem, solution: Solution) -> list[Message]:
                     where=f"channel {skew.channel}",
                     expected="stamps in step with the inertial sensor's",
                     found=f"{skew.delay_s:+.4f} s, standard error {skew.se:.4f} s",
-                    do="Nothing.",
+                    do="Nothing: within three standard errors of none, or under half a sample.",
                 )
             )
     return out

@@ -22,9 +22,11 @@ const AlulaPlot = (() => {
       this.panels = spec.panels.map((p) => ({
         label: p.label,
         small: p.small,
+        limit: p.limit || null,
         lines: p.lines.map((l) => ({ name: l.name, style: l.style, y: new Samples(l.y) })),
         bands: p.bands.map((b) => ({
           name: b.name,
+          usual: median(b.half),
           low: new Samples(b.half.map((h, i) => (b.center ? b.center[i] : 0) - h)),
           high: new Samples(b.half.map((h, i) => (b.center ? b.center[i] : 0) + h)),
         })),
@@ -108,8 +110,14 @@ const AlulaPlot = (() => {
         low = Math.min(low, e[0]); high = Math.max(high, e[1]);
       }
       if (low > high) { low = -1; high = 1; }
-      // A band may widen the axis to three times the curves' range, not flatten them.
-      const room = Math.max(high - low, 1e-9 * Math.max(Math.abs(low), Math.abs(high)), 1e-12);
+      panel.clipped = panel.limit && this.link.high - this.link.low > 0.1 * (this.link.end - this.link.start);
+      if (panel.clipped) return [-panel.limit, panel.limit];
+      // A band may widen the axis to three times the curves' range or to its usual width, not
+      // flatten them; a curve that hardly changes keeps numbers that can be read.
+      const least = 1e-5 * Math.max(Math.abs(low), Math.abs(high)) || 1e-12;
+      const room = Math.max(high - low, least, ...panel.bands.map((b) => 2 * b.usual));
+      const short = Math.max(0, least - (high - low)) / 2;
+      low -= short; high += short;
       let bottom = low, top = high;
       for (const b of panel.bands) {
         bottom = Math.min(bottom, Math.max(b.low.extremes(i, j)[0], low - room));
@@ -145,6 +153,7 @@ const AlulaPlot = (() => {
       c.clip();
       for (const b of p.bands) this.drawBand(c, b, y, i, j);
       for (const l of p.lines) this.drawLine(c, l, y, i, j);
+      if (p.clipped) this.drawBeyond(c, p, i, j);
       c.restore();
       c.strokeStyle = this.color.axis;
       c.strokeRect(crisp(LEFT), crisp(p.top), right - LEFT, p.bottom - p.top);
@@ -194,14 +203,13 @@ const AlulaPlot = (() => {
 
     /* Calls back with (x, lowest, highest, after a gap?) per sample, or per pixel column if dense. */
     walk(i, j, lows, highs, put) {
-      let last = -Infinity;
+      let last = -1; // the sample before, -1 where it is missing
       if (j - i <= 2 * (this.width - LEFT - RIGHT)) {
         for (let k = i; k < j; k++) {
-          const t = this.times.at(k);
           if (!Number.isNaN(lows.v[k])) {
-            put(this.x(t), lows.v[k], highs.v[k], last === -Infinity || t - last > this.times.gap);
-            last = t;
-          } else last = -Infinity;
+            put(this.x(this.times.at(k)), lows.v[k], highs.v[k], last < 0 || this.times.broken(last, k));
+            last = k;
+          } else last = -1;
         }
         return;
       }
@@ -210,9 +218,9 @@ const AlulaPlot = (() => {
         if (next > k) {
           const a = lows.extremes(k, next)[0], b = highs.extremes(k, next)[1];
           if (a <= b) {
-            put(x + 0.5, a, b, this.times.at(k) - last > this.times.gap || last === -Infinity);
-            last = this.times.at(next - 1);
-          } else last = -Infinity;
+            put(x + 0.5, a, b, last < 0 || this.times.broken(last, k));
+            last = next - 1;
+          } else last = -1;
         }
         k = next;
       }
@@ -231,6 +239,18 @@ const AlulaPlot = (() => {
       if (l.style === "measured" && (j - i) * 7 < this.width) {
         c.fillStyle = this.color.measured;
         for (let k = i; k < j; k++) c.fillRect(this.x(this.times.at(k)) - 1.5, y(l.y.v[k]) - 1.5, 3, 3);
+      }
+    }
+
+    /* A mark at the edge where a curve runs beyond the axis. */
+    drawBeyond(c, p, i, j) {
+      c.fillStyle = this.color.residual;
+      for (const l of p.lines) {
+        let up = -9, down = -9; // where the last mark stands
+        this.walk(i, j, l.y, l.y, (x, a, b) => {
+          if (b > p.limit && x - up > 5) triangle(c, up = x, p.top + 1, 5);
+          if (a < -p.limit && x - down > 5) triangle(c, down = x, p.bottom - 1, -5);
+        });
       }
     }
 
@@ -324,6 +344,19 @@ const AlulaPlot = (() => {
     }
   }
 
+  /* Half of the values (of a thousand of them) are larger. */
+  function median(values) {
+    const stride = Math.max(1, Math.floor(values.length / 1000));
+    const some = values.filter((v, i) => i % stride === 0 && Number.isFinite(v)).sort();
+    return some.length ? some[some.length >> 1] : 0;
+  }
+  function triangle(c, x, y, height) {
+    c.beginPath();
+    c.moveTo(x, y);
+    c.lineTo(x - 3.5, y + height);
+    c.lineTo(x + 3.5, y + height);
+    c.fill();
+  }
   const crisp = (v) => Math.round(v) + 0.5;
   function line(c, x0, y0, x1, y1) {
     c.beginPath();

@@ -38,21 +38,35 @@ const AlulaSeries = (() => {
     }
   }
 
-  /* Times of samples, increasing. A step over three times the median is a gap: no line across. */
+  /* Times of samples, increasing. breaks: the samples before which there is a gap, so no line leads
+     there; where they are not given, those after a step over three times the median. */
   class Times {
     static uniform(start, step, n) {
       const t = new Times();
-      Object.assign(t, { start, step, n, array: null, gap: Infinity });
+      Object.assign(t, { start, step, n, array: null, breaks: [] });
       return t;
     }
-    static of(array) {
+    static of(array, breaks = null) {
       const t = new Times(), n = array.length, steps = [];
       const stride = Math.max(1, Math.floor(n / 1000));
       for (let i = 1; i < n; i += stride) steps.push(array[i] - array[i - 1]);
       steps.sort((a, b) => a - b);
       const step = steps[steps.length >> 1] || 1;
-      Object.assign(t, { start: array[0], step, n, array, gap: 3 * step });
+      if (!breaks) {
+        breaks = [];
+        for (let i = 1; i < n; i++) if (array[i] - array[i - 1] > 3.03 * step) breaks.push(i);
+      }
+      Object.assign(t, { start: array[0], step, n, array, breaks });
       return t;
+    }
+    /* Is there a gap between samples i and j > i? */
+    broken(i, j) {
+      let a = 0, b = this.breaks.length;
+      while (a < b) {
+        const k = (a + b) >> 1;
+        if (this.breaks[k] <= i) a = k + 1; else b = k;
+      }
+      return a < this.breaks.length && this.breaks[a] <= j;
     }
     at(i) { return this.array ? this.array[i] : this.start + this.step * i; }
     get end() { return this.at(this.n - 1); }

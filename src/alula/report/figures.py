@@ -14,7 +14,7 @@ import numpy as np
 
 from alula.base.arrays import Array
 from alula.report.html import Html, join, json_block, tag
-from alula.report.thin import kept_samples
+from alula.report.thin import Indices, breaks, kept_breaks, kept_samples
 
 Style = Literal["measured", "model", "estimate", "residual"]
 
@@ -39,12 +39,17 @@ class Band:
 
 @dataclass(frozen=True)
 class Panel:
-    """One pair of axes. label: the ordinate with its unit. small: drawn lower, as residuals are."""
+    """One pair of axes. label: the ordinate with its unit. small: drawn lower, as residuals are.
+
+    limit: the axis first shows minus to plus this much; None: all there is. What lies beyond is
+    marked at the edge and seen after zooming in.
+    """
 
     label: str
     lines: tuple[Line, ...]
     bands: tuple[Band, ...] = ()
     small: bool = False
+    limit: float | None = None
 
 
 @dataclass(frozen=True)
@@ -77,12 +82,16 @@ class FigureStore:
         if total < 2:
             words = f"{figure.title}: {total or 'no'} sample, nothing to draw."
             return tag("p", words, class_="note")
-        keep = kept_samples(_columns(figure), self.most)
+        gaps = breaks(figure.t)
+        keep = kept_samples(_columns(figure), self.most, gaps)
+        if keep is not None:
+            gaps = kept_breaks(gaps, keep)
         t = figure.t if keep is None else figure.t[keep]
         panels = [
             {
                 "label": panel.label,
                 "small": panel.small,
+                "limit": panel.limit,
                 "lines": [
                     {"name": n.name, "style": n.style, "y": self._values(n.values, keep)}
                     for n in panel.lines
@@ -99,12 +108,12 @@ class FigureStore:
             for panel in figure.panels
         ]
         number = len(self._figures)
-        self._figures.append({"group": figure.group, "t": self._times(t), "panels": panels})
+        self._figures.append({"group": figure.group, "t": self._times(t, gaps), "panels": panels})
         note = [figure.note] if figure.note else []
         if keep is not None:
             note.append(
-                f"Drawn from {len(keep)} of {total} samples: of each stretch the lowest and the "
-                "highest of every curve. All samples were used in the computation."
+                f"Drawn from {len(keep)} of {total} samples, of each stretch the lowest and the "
+                "highest of every curve; computed with all."
             )
         held_out = (
             tag("span", "held out: not used in the fit", class_="tag") if figure.held_out else ""
@@ -131,17 +140,22 @@ class FigureStore:
         """The data block that the page's script reads."""
         return json_block("alula-plots", {"arrays": self._arrays, "figures": self._figures})
 
-    def _values(self, values: Array, keep: np.ndarray[Any, np.dtype[np.intp]] | None) -> str:
+    def _values(self, values: Array, keep: Indices | None) -> str:
         chosen = np.where(np.isfinite(values), values, np.nan)
         chosen = chosen if keep is None else chosen[keep]
         return self._carry(np.ascontiguousarray(chosen, dtype="<f4").tobytes())
 
-    def _times(self, t: Array) -> Any:
-        """Evenly spaced times as three numbers, others as float64 (float32 would round them)."""
+    def _times(self, t: Array, gaps: Indices) -> Any:
+        """Evenly spaced times as three numbers, others as float64 (float32 would round them).
+
+        gaps: the samples before which the data have one; the page cannot tell them from samples
+        that were thinned out.
+        """
         step = (t[-1] - t[0]) / max(len(t) - 1, 1)
-        if np.max(np.abs(t - (t[0] + step * np.arange(len(t))))) <= 1e-6:
+        if not len(gaps) and np.max(np.abs(t - (t[0] + step * np.arange(len(t))))) <= 1e-6:
             return {"start": float(t[0]), "step": float(step), "n": len(t)}
-        return {"y": self._carry(np.ascontiguousarray(t, dtype="<f8").tobytes())}
+        carried = self._carry(np.ascontiguousarray(t, dtype="<f8").tobytes())
+        return {"y": carried, "breaks": gaps.tolist()}
 
     def _carry(self, content: bytes) -> str:
         key = hashlib.sha256(content).digest()

@@ -51,6 +51,12 @@ def tag(name: str, /, *children: object, **attributes: object) -> Html:
     return Html("".join(text) + f">{join(children)}</{name}>")
 
 
+def file_name(path: str, shown: str | None = None) -> Html:
+    """A path by its last part (or as `shown`), whole where a pointer rests on it."""
+    name = shown or re.split(r"[/\\]", path.rstrip("/\\"))[-1] or path
+    return tag("code", name, title=path if name != path else None)
+
+
 def table(
     caption: object,
     head: Sequence[object],

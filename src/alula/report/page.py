@@ -13,13 +13,14 @@ from alula.report.sections.coefficients import coefficients
 from alula.report.sections.correlation import correlation
 from alula.report.sections.log_card import log_cards
 from alula.report.sections.maneuvers import maneuvers
+from alula.report.sections.motion import steady_states
 from alula.report.sections.notes import messages, provenance
 from alula.report.sections.parameters import parameters
 from alula.report.sections.reconstruction import reconstruction
 from alula.report.sections.summary import header
 
 _SCRIPTS = ("alula_series.js", "alula_link.js", "alula_plot.js", "report.js")
-_BUDGET = 2_000_000  # bytes of plot data, so that the page stays well under 3 MB
+_BUDGET = 2_300_000  # bytes of plot data, so that the page stays well under 3 MB
 _LEAST = 150  # samples that a figure carries in any case, so that its course can be seen
 
 
@@ -85,7 +86,7 @@ def _sections(report: ReportInput, figures: FigureStore) -> list[tuple[str, str,
     if report.reconstruction is not None:
         content = reconstruction(report.reconstruction, figures)
         found.append(("reconstruction", "Flight path reconstruction", content))
-    if report.identification is not None:
+    if report.identification is not None and report.identification.parameters:
         fits = coefficients(report.identification, figures)
         found.append(("coefficients", "Coefficients: measured and model", fits))
         found.append(("parameters", "Parameters", parameters(report.identification)))
@@ -112,10 +113,13 @@ def most_samples(report: ReportInput) -> int:
     columns = 0
     if report.reconstruction is not None:
         for segment in report.reconstruction.segments:
-            columns += 2 * len(segment.state_names) + 16 + len(segment.motion.controls)
+            drawn = len(segment.state_names) - len(steady_states(segment))
+            columns += 2 * drawn + 16 + len(segment.motion.controls)
             columns += 4 * len(segment.sensors)
+            # thinned figures have times of their own, of twice the size of a value
+            columns += 2 * (drawn // 2 + 7 + len(segment.sensors))
     if report.identification is not None:
-        columns += 3 * len(report.identification.series)
+        columns += 5 * len(report.identification.series)
     per_value = 4 * 4 / 3  # float32 in base64
     return max(_LEAST, int(_BUDGET / (per_value * max(columns, 1))))
 

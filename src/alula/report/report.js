@@ -10,7 +10,7 @@
     if (!decoded.has(id)) decoded.set(id, new Float32Array(bytes(id)));
     return decoded.get(id);
   };
-  const times = (t) => "y" in t ? AlulaSeries.Times.of(new Float64Array(bytes(t.y)))
+  const times = (t) => "y" in t ? AlulaSeries.Times.of(new Float64Array(bytes(t.y)), t.breaks)
     : AlulaSeries.Times.uniform(t.start, t.step, t.n);
   const links = new Map();
   const link = (group) => {
@@ -49,10 +49,18 @@
   addEventListener("beforeprint", () => {
     before = root.dataset.theme || "";
     root.dataset.theme = "light";
+    for (const d of document.querySelectorAll("details:not([open])")) {
+      d.open = true;
+      d.dataset.shut = "";
+    }
     for (const plot of plots) plot.fix({ width: 350, scale: 3, height: 0.8 });
   });
   addEventListener("afterprint", () => {
     if (before) root.dataset.theme = before; else delete root.dataset.theme;
+    for (const d of document.querySelectorAll("details[data-shut]")) {
+      d.open = false;
+      delete d.dataset.shut;
+    }
     for (const plot of plots) plot.fix(null);
   });
 })();

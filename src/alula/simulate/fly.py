@@ -9,6 +9,7 @@ import numpy as np
 
 from alula.base.arrays import Array, frozen
 from alula.base.messages import refuse
+from alula.core import core
 from alula.flight import Maneuver, Motion
 from alula.model import AXES, AeroModel
 from alula.simulate.airframe import GRAVITY, Airframe, core_model
@@ -48,32 +49,20 @@ def initial_state(
 
     rates: p q r, rad/s; wind: (3,) NED m/s, the way it blows to.
     """
-    half = 0.5 * np.array([phi, theta, psi])
-    (cx, cy, cz), (sx, sy, sz) = np.cos(half), np.sin(half)
-    quaternion = np.array(
-        [
-            cx * cy * cz + sx * sy * sz,
-            sx * cy * cz - cx * sy * sz,
-            cx * sy * cz + sx * cy * sz,
-            cx * cy * sz - sx * sy * cz,
-        ]
-    )
+    quaternion = np.empty(4)
+    core.quaternion_from_euler(phi, theta, psi, quaternion)
     air = V * np.array([np.cos(alpha) * np.cos(beta), np.sin(beta), np.sin(alpha) * np.cos(beta)])
-    drift = np.zeros(3) if wind is None else earth_to_body(quaternion[None])[0] @ wind
-    return np.concatenate([[0.0, 0.0, -h], quaternion, air + drift, rates])
+    state = np.concatenate([[0.0, 0.0, -h], quaternion, air, rates])
+    if wind is not None:
+        state[7:10] += attitudes(state[None])[1][0] @ wind
+    return state
 
 
-def earth_to_body(quaternions: Array) -> Array:
-    """R_BE (n, 3, 3) of quaternions (n, 4), scalar first; of unit norm after this."""
-    w, x, y, z = (quaternions / np.linalg.norm(quaternions, axis=1, keepdims=True)).T
-    return np.stack(
-        [
-            np.stack([1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)], -1),
-            np.stack([2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)], -1),
-            np.stack([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)], -1),
-        ],
-        axis=1,
-    )
+def attitudes(states: Array) -> tuple[Array, Array]:
+    """Euler angles (n, 3) rad and R_BE (n, 3, 3) of the core's states (n, 13)."""
+    euler, rotation = np.empty((len(states), 3)), np.empty((len(states), 3, 3))
+    core.attitudes(states, euler, rotation)
+    return euler, rotation
 
 
 def fly(
@@ -149,7 +138,7 @@ def _inputs(controls: Mapping[str, Array | float], n: int) -> Array:
 def _as_flight(
     model: AeroModel, maneuver: Maneuver, t: Array, inputs: Array, states: Array, outputs: Array
 ) -> SimulatedFlight:
-    R = earth_to_body(states[:, 3:7])
+    euler, R = attitudes(states)
     ax, ay, az, pdot, qdot, rdot, V, alpha, beta, mach, rho = (frozen(c) for c in outputs.T[:11])
     p, q, r = (frozen(c) for c in states.T[10:13])
     motion = Motion(
@@ -159,9 +148,7 @@ def _as_flight(
         p=p, q=q, r=r,
         pdot=pdot, qdot=qdot, rdot=rdot,
         ax=ax, ay=ay, az=az,
-        phi=frozen(np.arctan2(R[:, 1, 2], R[:, 2, 2])),
-        theta=frozen(np.arctan2(-R[:, 0, 2], np.hypot(R[:, 0, 0], R[:, 0, 1]))),
-        psi=frozen(np.arctan2(R[:, 0, 1], R[:, 0, 0])),
+        phi=frozen(euler[:, 0]), theta=frozen(euler[:, 1]), psi=frozen(euler[:, 2]),
         h=frozen(-states[:, 2]),
         rho=rho,
         controls={name: frozen(inputs[:, i]) for i, name in enumerate(CONTROLS[:5])},

@@ -37,8 +37,8 @@ class Pulse:
 class Steps:
     """A train of steps: sign or size `levels[i]` times `amplitude` for `widths[i]` s, from `start`.
 
-    ramp: time of each change of level (s), begun at the step's edge, as a hand or an actuator
-    needs it; 0 for ideal edges.
+    ramp: time of each change of level (s), begun at the step's edge, a half cosine as a hand or an
+    actuator makes it; 0 for ideal edges.
     """
 
     amplitude: float
@@ -62,7 +62,9 @@ class Steps:
         levels = np.concatenate([[0.0], self.levels, [0.0]])
         out = np.zeros(np.shape(t))
         for edge, change in zip(edges, np.diff(levels), strict=True):
-            part = t >= edge if self.ramp <= 0.0 else np.clip((t - edge) / self.ramp, 0.0, 1.0)
+            part = np.asarray(t >= edge, dtype=np.float64)
+            if self.ramp > 0.0:
+                part = 0.5 - 0.5 * np.cos(np.pi * np.clip((t - edge) / self.ramp, 0.0, 1.0))
             out = out + self.amplitude * change * part
         return out
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from alula.report.html import Html, join, table, tag
+from alula.report.html import Html, file_name, join, table, tag
 from alula.report.input import ReportInput
 from alula.report.numbers import MISSING, compact, number, shown, span
 
@@ -20,10 +20,18 @@ def log_cards(report: ReportInput) -> Html:
 
 def _files(report: ReportInput) -> Html:
     return table(
-        "Files read. Decoded, skipped and unknown bytes add up to the file's size.",
+        "Files read. Decoded, skipped and unknown bytes add up to the file's size. Whole paths and "
+        "hashes stand under provenance.",
         ["File", "Bytes", "Decoded", "Skipped", "Unknown", "SHA-256"],
         (
-            [tag("code", f.path), f.bytes, f.decoded, f.skipped, f.unknown, tag("code", f.sha256)]
+            [
+                file_name(f.path),
+                f.bytes,
+                f.decoded,
+                f.skipped,
+                f.unknown,
+                tag("code", f"{f.sha256[:12]}…", title=f.sha256),
+            ]
             for f in report.files()
         ),
         numeric=(1, 2, 3, 4),

@@ -7,11 +7,12 @@ from itertools import groupby
 
 import numpy as np
 
+from alula.base.arrays import Array
 from alula.flight import Maneuver, Motion
 from alula.reconstruct.result import Segment, SensorFit
 from alula.report.figures import Band, Figure, Line, Panel
 from alula.report.names import titled, unit_of
-from alula.report.numbers import shown
+from alula.report.numbers import number, shown
 
 _MOTION = {
     "Air data": ("V", "alpha", "beta"),
@@ -33,8 +34,10 @@ _PANELS = 3  # states above one another in a figure
 def state_figures(segment: Segment) -> Iterator[Figure]:
     """The filter's states, neighbors of one unit in one figure, with bands of ±2 se."""
     names = segment.state_names
-    for _, group in groupby(range(len(names)), key=lambda k: unit_of(names[k])):
-        members = list(group)
+    moving = [k for k in range(len(names)) if names[k] not in steady_states(segment)]
+    groups = [list(group) for _, group in groupby(moving, key=lambda k: unit_of(names[k]))]
+    # the tall figures first, so that those of one panel do not leave holes beside them
+    for members in sorted(groups, key=lambda g: -min(len(g), _PANELS)):
         for first in range(0, len(members), _PANELS):
             chosen = members[first : first + _PANELS]
             first_name = names[chosen[0]]
@@ -46,6 +49,23 @@ def state_figures(segment: Segment) -> Iterator[Figure]:
                 segment.motion.t,
                 tuple(_state(segment, k) for k in chosen),
             )
+
+
+def steady_states(segment: Segment) -> tuple[str, ...]:
+    """The states that keep one value and one error: constants, which a table tells better."""
+
+    def steady(values: Array, scale: float) -> bool:
+        return bool(np.ptp(values) <= 1e-3 * scale)
+
+    return tuple(
+        name
+        for name, values, se in zip(
+            segment.state_names, segment.states.T, segment.states_se.T, strict=True
+        )
+        if name.startswith(("b_", "k_", "wind_"))
+        and steady(values, float(np.median(se)))
+        and steady(se, float(np.median(se)))
+    )
 
 
 def _state(segment: Segment, k: int) -> Panel:
@@ -89,9 +109,12 @@ def sensor_figure(sensor: SensorFit, maneuver: Maneuver, title: str) -> Figure:
     if np.isfinite(sensor.innovation).any():
         below = Line("innovation", factor * sensor.innovation, "residual")
         half, name = 2.0 * factor * sensor.innovation_se, "±2 σ"
+        what = "innovations"
     else:
         below = Line("measured − fitted", factor * (sensor.measured - sensor.fitted), "residual")
         half, name = np.full(len(sensor.t), 2.0 * factor * sensor.sigma), "±2 σ stated"
+        what = "residuals"
+    limit = _limit(below.values, half)
     return Figure(
         title,
         maneuver.id,
@@ -104,6 +127,36 @@ def sensor_figure(sensor: SensorFit, maneuver: Maneuver, title: str) -> Figure:
                     Line("fitted", factor * sensor.fitted, "model"),
                 ),
             ),
-            Panel(f"{below.name} ({unit})", (below,), (Band(name, half),), small=True),
+            Panel(f"{below.name} ({unit})", (below,), (Band(name, half),), small=True, limit=limit),
         ),
+        note=_beyond(sensor.t, below.values, limit, what, unit),
+    )
+
+
+def _limit(values: Array, half: Array) -> float | None:
+    """How far the axis of innovations reaches: four median standard deviations (two half bands).
+
+    So a filter's first samples, whose band is that of the initial covariance, do not flatten the
+    rest. Wider where more than one sample in fifty would lie outside, or all by little.
+    """
+    size, bands = np.abs(values[np.isfinite(values)]), half[np.isfinite(half)]
+    if not (size.size and bands.size):
+        return None
+    usual = max(2.0 * float(np.median(bands)), 1.05 * float(np.quantile(size, 0.98)))
+    largest = 1.05 * float(size.max())
+    limit = largest if usual < largest <= 1.5 * usual else usual
+    return limit if limit > 0.0 else None
+
+
+def _beyond(t: Array, values: Array, limit: float | None, what: str, unit: str) -> str:
+    """What the caption says of the samples beyond the axis; empty where there are none."""
+    size = np.abs(np.nan_to_num(values))
+    count = 0 if limit is None else int((size > limit).sum())
+    if not count:
+        return ""
+    k = int(size.argmax())
+    return (
+        f"{count} of {len(t)} {what} beyond this axis, marked at its edge; the largest is "
+        f"{number(values[k], 3)} {unit} at {number(t[k], 4)} s. Zoom in to less than a tenth of "
+        "the time to see them."
     )

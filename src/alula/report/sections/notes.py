@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -12,37 +13,38 @@ from alula.report.numbers import MISSING
 from alula.report.pictures import mark
 
 _LEVEL = {"error": ("bad", "error"), "warning": ("caution", "warning"), "info": ("good", "note")}
+_FOLDED = 3  # notes of one code from which they share a row
+# a path from the root, as messages name files: only its last part is shown
+_PATH = re.compile(r"(?<![^\s\"'(])(?:[A-Za-z]:)?[/\\](?:[^\s:/\\]+[/\\])+([^\s:/\\]+)")
 
 
 def messages(report: ReportInput) -> Html:
-    """Errors and warnings first, then every conversion and repair."""
+    """Errors and warnings first, one by one, then every conversion and repair by its kind."""
     found = report.all_messages()
     order = {"error": 0, "warning": 1}
     serious = sorted((m for m in found if m.level != "info"), key=lambda m: order[m.level])
     notes = [m for m in found if m.level == "info"]
     return join(
         [
-            _table("Errors and warnings", serious)
-            if serious
-            else tag("p", mark("good", "No errors and no warnings.")),
-            _table("What was done to the data", notes)
+            _serious(serious) if serious else tag("p", mark("good", "No errors and no warnings.")),
+            _notes(notes)
             if notes
             else tag("p", "No sample was dropped, resampled, filtered or converted."),
         ]
     )
 
 
-def _table(caption: str, members: Sequence[Message]) -> Html:
+def _serious(members: Sequence[Message]) -> Html:
     return table(
-        caption,
-        ["Where", "Kind", "Expected", "Found", "What to do, or what was done"],
+        "Errors and warnings",
+        ["Where", "Kind", "Expected", "Found", "What to do"],
         (
             [
-                m.where,
+                _short(m.where),
                 join([mark(*_LEVEL[m.level]), " ", tag("code", m.code)]),
-                m.expected,
-                m.found,
-                m.do or MISSING,
+                _short(m.expected),
+                _short(m.found),
+                _short(m.do) if m.do else MISSING,
             ]
             for m in members
         ),
@@ -50,14 +52,74 @@ def _table(caption: str, members: Sequence[Message]) -> Html:
     )
 
 
+def _notes(members: Sequence[Message]) -> Html:
+    """A row for each kind of note; those of one kind unfold."""
+    by_code: dict[str, list[Message]] = {}
+    for m in members:
+        by_code.setdefault(m.code, []).append(m)
+    return table(
+        "What was done to the data. Where there are many notes of one kind they unfold; on paper "
+        "all are shown.",
+        ["Kind", "Notes", "What was found and what was done"],
+        ([tag("code", code), len(group), _group(group)] for code, group in by_code.items()),
+        numeric=(1,),
+        class_="notes",
+    )
+
+
+def _group(members: Sequence[Message]) -> Html:
+    lines = tag("ul", *(tag("li", _line(m)) for m in members), class_="plain")
+    if len(members) < _FOLDED:
+        return lines
+    first = members[0]
+    beginning = join(
+        [_short(first.where), f": {_shortened(first.found)}", f" and {len(members) - 1} more"]
+    )
+    return tag("details", tag("summary", beginning), lines)
+
+
+def _line(m: Message) -> Html:
+    """'channel q: column 8 in deg/s (expected: as recorded). It is now in rad/s.'"""
+    return join(
+        [
+            tag("strong", _short(m.where)),
+            f": {_shortened(m.found)} (expected: {_shortened(m.expected)}). ",
+            _short(m.do),
+        ]
+    )
+
+
+def _shortened(text: str) -> str:
+    return _PATH.sub(r"\1", text)
+
+
+def _short(text: str) -> Html:
+    """Text with its paths by their last part, whole where a pointer rests on it."""
+    shown = _shortened(text)
+    return tag("span", shown, title=text if shown != text else None)
+
+
 def provenance(report: ReportInput) -> Html:
     """Every value that is needed to make the result again."""
+    lines = flattened(report.provenance)
+    if report.path:
+        lines.append(("project file", report.path))
+    for f in report.files():
+        lines.append(("log", f"{f.path} · {f.bytes} bytes · SHA-256 {f.sha256}"))
     return table(
         "Provenance. The same project file, logs and versions give the same result.",
         ["What", "Value"],
-        ([key, tag("code", value)] for key, value in flattened(report.provenance)),
+        ([_LABELS.get(key, key), tag("code", value)] for key, value in lines),
         class_="text provenance",
     )
+
+
+_LABELS = {
+    "alula": "Alula",
+    "isa": "instruction set",
+    "project": "project file, SHA-256",
+    "aircraft": "aircraft file, SHA-256",
+}
 
 
 def flattened(values: Mapping[str, Any], before: str = "") -> list[tuple[str, str]]:

@@ -12,15 +12,17 @@ from alula.report.html import Html, join, table, tag
 from alula.report.names import meaning, titled, unit_of
 from alula.report.numbers import MISSING, number, plus_minus, rms, shown
 from alula.report.pictures import mark, within_picture
-from alula.report.sections.motion import motion_figures, sensor_figure, state_figures
+from alula.report.sections.motion import motion_figures, sensor_figure, state_figures, steady_states
+from alula.report.sections.summary import method_words, sentence
 
 
 def reconstruction(result: Reconstruction, figures: FigureStore) -> Html:
     """Tables of the whole reconstruction, then the plots of each maneuver."""
     level = "good" if result.converged else "bad"
+    words = f"Method: {method_words(result.method)}. {sentence(result.status)}"
     return join(
         [
-            tag("p", mark(level, f"Method: {result.method}. {result.status}", long=True)),
+            tag("p", mark(level, words, long=True)),
             _constants(result),
             _nis(result),
             _mismatch(result),
@@ -155,11 +157,22 @@ def _inside(s: SensorFit) -> str:
     return f"{100.0 * share:.0f} %"
 
 
+def _steady(segment: Segment) -> Html:
+    """Says which states are not drawn and where they are told."""
+    names = steady_states(segment)
+    if not names:
+        return Html("")
+    codes = Html(", ".join(tag("code", name) for name in names))
+    words = "keep one value: see the table of constants above."
+    return tag("p", codes, f" {'each ' if len(names) > 1 else ''}{words}", class_="note")
+
+
 def _segment(segment: Segment, figures: FigureStore) -> Html:
     maneuver = segment.maneuver
     grid = [
         tag("h4", "States with their ±2 standard error bands, at the inertial sensor"),
         tag("div", *(figures.add(f) for f in state_figures(segment)), class_="grid"),
+        _steady(segment),
         tag("h4", "Motion at the center of gravity, as identification takes it"),
         tag("div", *(figures.add(f) for f in motion_figures(segment.motion)), class_="grid"),
         tag("h4", "Sensors: measured and fitted, innovations with their 2 σ bands"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from alula.identify.result import Identification
-from alula.report.html import Html, escape, join, tag
+from alula.report.html import Html, escape, file_name, join, tag
 from alula.report.input import ReportInput
 from alula.report.names import WORDS
 from alula.report.numbers import number
@@ -15,7 +15,7 @@ from alula.report.pictures import mark
 def header(report: ReportInput) -> Html:
     """Title, project, aircraft and the verdict with its reasons."""
     level, words = verdict(report)
-    facts = {"Project": tag("code", report.path), "Date": report.date}
+    facts = {"Project": file_name(report.path), "Date": report.date}
     facts.update({k: escape(v) for k, v in report.aircraft.items()})
     return tag(
         "header",
@@ -42,8 +42,8 @@ def verdict(report: ReportInput) -> tuple[str, str]:
         return "bad", "An error was found: the result must not be used"
     if reconstruction is not None and not reconstruction.converged:
         return "bad", "The reconstruction did not converge: the result must not be used"
-    if identification is None:
-        return "caution", "No model was identified: this page shows the data only"
+    if identification is None or not identification.parameters:
+        return _without_model(report)
     count = {"ok": 0, "weak": 0, "not_identifiable": 0}
     for p in identification.parameters:
         count[p.verdict] += 1
@@ -55,6 +55,27 @@ def verdict(report: ReportInput) -> tuple[str, str]:
     return "good", f"All {total} parameters are resolved by these data"
 
 
+def _without_model(report: ReportInput) -> tuple[str, str]:
+    """The verdict of a project that asks for no model, or did not come so far."""
+    if report.reconstruction is None or not report.reconstruction.segments:
+        return "caution", "No model was identified: this page shows the data only"
+    unseen = [c.name for c in report.reconstruction.constants if not c.observable]
+    if unseen:
+        return "caution", (
+            "The flight path is reconstructed, but these constants are not observable: "
+            + ", ".join(unseen)
+        )
+    return "good", "The flight path is reconstructed; no model was asked for"
+
+
+_METHODS = {
+    "ekf": "extended Kalman filter and smoother",
+    "ukf": "unscented Kalman filter and smoother",
+    "ml": "maximum likelihood, output error",
+    "none": "none, motion as recorded",
+}
+
+
 def reasons(report: ReportInput) -> list[Html]:
     """The findings behind the verdict, one sentence each."""
     found: list[Html] = []
@@ -62,11 +83,14 @@ def reasons(report: ReportInput) -> list[Html]:
     if identification is not None:
         found += _parameters(identification) + _fits(identification)
         if identification.status:
-            found.append(escape(f"Identification: {identification.status}"))
+            found.append(escape(f"Identification: {sentence(identification.status)}"))
     if reconstruction is not None:
-        state = "converged" if reconstruction.converged else "did not converge"
+        failed = "" if reconstruction.converged else " did not converge"
         found.append(
-            escape(f"Reconstruction ({reconstruction.method}) {state}. {reconstruction.status}")
+            escape(
+                f"Reconstruction ({method_words(reconstruction.method)}){failed}: "
+                f"{sentence(reconstruction.status)}"
+            )
         )
     levels = [m.level for m in report.all_messages()]
     count = {k: levels.count(k) for k in ("error", "warning", "info")}
@@ -113,12 +137,22 @@ def _fits(result: Identification) -> list[Html]:
 
 def _r2(name: str, value: float) -> Html:
     words = f" ({WORDS[name]})" if name in WORDS else ""
-    return join([tag("code", name), f"{words} {number(value, 3)}"])
+    return join([tag("code", name), f"{words} {number(value, 4)}"])
 
 
 def _listed(start: str, items: list[Html]) -> Html:
     """'start a, b.'"""
     return join([start, Html(", ".join(items)), "."])
+
+
+def sentence(text: str) -> str:
+    """The text with a full stop, unless it ends a sentence already."""
+    return text if text.endswith((".", "!", "?")) or not text else f"{text}."
+
+
+def method_words(method: str) -> str:
+    """What a method's short name stands for; itself where there are no words."""
+    return _METHODS.get(method, method)
 
 
 def _many(count: int, what: str) -> str:

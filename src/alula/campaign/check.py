@@ -1,0 +1,127 @@
+"""A project's logs, read and looked through before anything is estimated."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from alula.aircraft import Aircraft, control_sign_check, load_aircraft
+from alula.base.messages import Message, note, refuse
+from alula.base.project import Project, load_project
+from alula.flight import Flight, Maneuver, Motion
+from alula.logs.card import LogCard, log_card
+from alula.logs.maneuvers import maneuvers
+from alula.logs.reader import read_all
+from alula.reconstruct.recorded import recorded_motion
+
+Progress = Callable[[str], None]
+
+# Codes of warnings after which a result would be wrong, not only less certain.
+CONTRADICTIONS = ("control_sign", "sign_contradiction")
+
+
+@dataclass(frozen=True)
+class Checked:
+    """A project's logs, read and looked through."""
+
+    project: Project
+    aircraft: Aircraft
+    flights: Mapping[str, Flight]
+    maneuvers: tuple[Maneuver, ...]
+    cards: tuple[LogCard, ...]
+    messages: tuple[Message, ...]  # beyond those of the cards
+
+    @property
+    def failed(self) -> bool:
+        """Whether the recordings contradict each other or the aircraft file."""
+        return any(m.code in CONTRADICTIONS for m in self.all_messages())
+
+    def all_messages(self) -> tuple[Message, ...]:
+        """Those of the logs and those of the project, each once."""
+        return tuple(
+            dict.fromkeys([m for card in self.cards for m in card.messages] + list(self.messages))
+        )
+
+
+def check_project(
+    path: str, only: Sequence[str] = (), progress: Progress = lambda _: None
+) -> Checked:
+    """Read everything a project names and look through it. only: maneuver ids, all if empty.
+
+    Raises BadInput, with every message there is, for what cannot be used.
+    """
+    project = load_project(path)
+    if project.aircraft is None:
+        raise refuse(
+            "missing_aircraft",
+            where=f"{path}: aircraft",
+            expected="the path of an aircraft file",
+            found="none",
+            do='Add aircraft = "my_aircraft.toml".',
+        )
+    aircraft = load_aircraft(project.aircraft)
+    progress("reading logs")
+    flights = read_all(project)
+    found, said = maneuvers(project, flights)
+    chosen = _chosen(project, found, only)
+    messages = [*aircraft.messages, *said, *_signs(flights, chosen, aircraft)]
+    cards = tuple(log_card(flight, found) for flight in flights.values())
+    return Checked(project, aircraft, flights, chosen, cards, tuple(messages))
+
+
+def _chosen(
+    project: Project, found: Sequence[Maneuver], only: Sequence[str]
+) -> tuple[Maneuver, ...]:
+    """The maneuvers asked for, by their own id or, where split at gaps, by the whole one's."""
+    if not only:
+        return tuple(found)
+    wholes = [m.id for m in project.maneuvers]
+    names = {m.id: {m.id} for m in found}
+    for maneuver in found:
+        whole = maneuver.id.rpartition(".")[0]
+        if whole in wholes and maneuver.id not in wholes:
+            names[maneuver.id].add(whole)
+    known = {name for group in names.values() for name in group}
+    for id in only:
+        if id not in known:
+            raise refuse(
+                "unknown_maneuver",
+                where="--maneuver",
+                expected="one of " + (", ".join(sorted(known)) or "the project's, which has none"),
+                found=f"'{id}'",
+                do="Name a maneuver of the project file.",
+            )
+    return tuple(m for m in found if names[m.id] & set(only))
+
+
+def _signs(
+    flights: Mapping[str, Flight], chosen: Sequence[Maneuver], aircraft: Aircraft
+) -> list[Message]:
+    """Control senses: what was turned round, and what contradicts the motion."""
+    out = [
+        note(
+            "control_turned",
+            where=f"channel {name}",
+            expected="Alula's sense: a positive deflection gives a negative moment",
+            found="the opposite one, by the aircraft file's sign",
+            do="Nothing: the channel is multiplied by -1.",
+        )
+        for name, sign in aircraft.control_signs.items()
+        if sign < 0 and any(name in f for f in flights.values())
+    ]
+    for maneuver in chosen:
+        flight = flights[maneuver.log]
+        if "V" not in flight or "alpha" not in flight:
+            continue
+        motion, _ = recorded_motion(flight, maneuver, aircraft, 0.0)
+        if len(motion.t) < 20:
+            continue
+        for message in control_sign_check(_plain(motion), motion.dt):
+            out.append(replace(message, where=f"maneuver {maneuver.id}, {message.where}"))
+    return out
+
+
+def _plain(motion: Motion) -> dict[str, Any]:
+    names = ("alpha", "beta", "p", "q", "r", "pdot", "qdot", "rdot")
+    return {**{n: getattr(motion, n) for n in names}, **motion.controls}
