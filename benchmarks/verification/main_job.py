@@ -13,6 +13,7 @@ import numpy as np
 
 from verification.registry import row
 from verification.run import (
+    DATA,
     ROOT,
     command,
     constants,
@@ -135,8 +136,6 @@ FOOT = 0.3048
 def harv(quick: bool) -> tuple[str, bool]:
     from scipy.io import loadmat
 
-    from verification.run import DATA
-
     published = loadmat(DATA / "harv" / "compat_lon_example.mat")
     names = ("b_ax", "b_az", "b_q", "k_alpha", "k_theta")
     units = np.array([FOOT, FOOT, 1.0, 1.0, 1.0])
@@ -174,7 +173,19 @@ def _reconstruction_only(project: str) -> dict:
     "cannot observe is reported, not counted",
 )
 def citation_two_step(quick: bool) -> tuple[str, bool]:
-    return _slow_tests("tests/reconstruct/test_citation_two_step.py", quick)
+    from verification import two_step
+
+    seeds = range(3 if quick else 100)
+    v = two_step.monte_carlo(DATA / "citation_two_step", seeds, every=4 if quick else 1)
+    worst = min(v.coverage, key=lambda n: v.coverage[n])
+    least = min(v.nees_inside.values())
+    got = (
+        f"{len(seeds)} seeds: pooled {100 * v.pooled:.1f} %, least {worst} "
+        f"{100 * v.coverage[worst]:.0f} %; NEES inside at {100 * least:.0f} % of the "
+        f"times or more; not observable: {', '.join(v.unobservable) or 'none'}"
+    )
+    held = 0.92 <= v.pooled <= 0.98 and v.coverage[worst] >= 0.86 and least >= 0.9
+    return got, held and not quick
 
 
 @row(
@@ -184,14 +195,27 @@ def citation_two_step(quick: bool) -> tuple[str, bool]:
     "excited derivative reads ok, standard error under 10 % for the seven main ones",
 )
 def demo_truth(quick: bool) -> tuple[str, bool]:
-    return _slow_tests("tests/campaign/test_demo_coverage.py", quick)
+    from verification.demo_coverage import coverage, run_seeds
+
+    runs = run_seeds(range(1000, 1004 if quick else 1200))
+    c = coverage(runs)
+    main = {"Cm_alpha", "Cm_q", "Cm_de", "Cl_p", "Cl_da", "Cn_beta", "Cn_dr"}
+    first = runs[0]
+    far = [e.name for e in first if abs(e.value - e.truth) > 3.29 * _se_of_interval(e)]
+    unclear = [e.name for e in first if not e.name.endswith("_0") and e.verdict != "ok"]
+    wide = max(e.se / abs(e.value) for e in first if e.name in main)
+    got = (
+        f"{len(runs)} seeds: pooled {100 * c.pooled:.1f} %, least {c.worst[0]} "
+        f"{100 * c.worst[1]:.0f} %; outside 99.9 %: {far or 'none'}; not ok: {unclear or 'none'}; "
+        f"largest standard error of the main ones {100 * wide:.1f} %"
+    )
+    held = 0.92 <= c.pooled <= 0.98 and c.worst[1] >= 0.88
+    return got, held and not quick and not far and not unclear and wide < 0.1
 
 
-def _slow_tests(path: str, quick: bool) -> tuple[str, bool]:
-    """A Monte Carlo that is one of the slow tests."""
-    if not (ROOT / path).exists():
-        return f"not built yet: {path}", False
-    return run_tests(path, slow=not quick)
+def _se_of_interval(estimate) -> float:
+    """Standard deviation of a normal error that has this 95 % interval."""
+    return (estimate.high - estimate.low) / (2 * 1.959964)
 
 
 @row(
