@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import hashlib
 import os
 import tempfile
@@ -13,12 +14,14 @@ from alula.base.messages import refuse
 def write_whole(path: Path, content: str | bytes) -> None:
     """Write `content` to `path` by a temporary file beside it, fsync and rename.
 
-    Raises BadInput if the folder does not exist or cannot be written to; an older file of that
-    name is then untouched.
+    Raises BadInput if the folder does not exist or cannot be written to, or if the name is that of
+    a device or pipe, which a rename would replace; what was there is then untouched.
     """
     data = content.encode() if isinstance(content, str) else content
     temporary = ""
     try:
+        if path.exists() and not path.is_file():
+            raise OSError(errno.EINVAL, "a folder, device or pipe")
         handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
         with os.fdopen(handle, "wb") as file:
             file.write(data)

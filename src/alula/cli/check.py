@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -18,6 +19,8 @@ from alula.cli.contract import (
 
 if TYPE_CHECKING:
     from alula.campaign import Checked
+
+WIDTH = 130  # characters that the tables of a log card ask for
 
 
 def check(
@@ -51,11 +54,17 @@ def _text(checked: Checked, notes: bool) -> str:
 
     from alula.logs.card_view import card_view
 
-    console = Console()
+    # Where no terminal states its width, lines may be as long as the tables need.
+    console = Console() if sys.stdout.isatty() else Console(width=max(Console().width, WIDTH))
+    notes_said = [m for m in checked.all_messages() if notes and m.level == "info"]
+    converted = [m for m in notes_said if m.code == "converted"]  # each stands in the table
     with console.capture() as text:
         for card in checked.cards:
             console.print(card_view(replace(card, messages=())))
-        for message in checked.all_messages() if notes else ():
-            if message.level == "info":
+        for message in notes_said:
+            if message.code != "converted":
                 console.print(f"note: {message}", style="dim", markup=False, highlight=False)
+        if converted:
+            said = f"note: {len(converted)} channels were converted to SI from what 'source' names."
+            console.print(said, style="dim", highlight=False)
     return text.get().rstrip("\n")

@@ -74,13 +74,19 @@ class Command:
             for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
                 os.environ[name] = str(self.threads)
         try:
-            if self.json and self.talks:
-                writable(Path(self.json), "json")
+            self._json_can_be_written()
             yield
         except BadInput as error:
             self.status, self.messages = "bad_input", error.messages
             self.result = {}
         self._finish()
+
+    def _json_can_be_written(self) -> None:
+        if not self.json or not self.talks:
+            return
+        path, self.json = self.json, ""  # no envelope to where it must not go
+        writable(Path(path), "json")
+        self.json = path
 
     def _finish(self) -> None:
         for message in self.messages:

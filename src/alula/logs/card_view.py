@@ -32,33 +32,57 @@ def card_view(card: LogCard) -> RenderableType:
 
 
 def _channels(card: LogCard) -> Table:
-    table = Table(title=f"Log {escape(card.log)}", title_justify="left")
-    for name in ("channel", "unit"):
-        table.add_column(name)
-    for name in ("Hz", "samples", "NaN", "gaps", "from s", "to s", "min", "median", "max", "step"):
-        table.add_column(name, justify="right")
-    table.add_column("source", overflow="fold")
-    for c in card.channels:
-        table.add_row(*_row(c))
+    """One line per channel; columns in which nothing stands are left out."""
+    spans = {(c.start, c.end) for c in card.channels}
+    title = f"Log {escape(card.log)}"
+    if len(spans) == 1:
+        title += " from {:.6g} to {:.6g} s".format(*spans.pop())
+        spans = set()
+    columns = [_cells(c, own_span=bool(spans)) for c in card.channels]
+    names = [n for n in columns[0] if any(c[n] for c in columns)] if columns else []
+    table = _table(title)
+    for name in names:
+        if name in ("channel", "unit"):
+            table.add_column(name, no_wrap=True)
+        elif name == "source":
+            table.add_column(name, overflow="fold", min_width=8)
+        else:
+            table.add_column(name, justify="right", no_wrap=True)
+    for cells in columns:
+        table.add_row(*(cells[name] for name in names))
     return table
 
 
-def _row(c: ChannelCard) -> list[str]:
+def _table(title: str) -> Table:
+    return Table(title=title, title_justify="left", title_style="bold", box=None, pad_edge=False)
+
+
+def _cells(c: ChannelCard, own_span: bool) -> dict[str, str]:
     unit, factor = SHOWN.get(c.unit, (c.unit, 1.0))
-    values = (c.minimum, c.median, c.maximum, c.step)
-    numbers = [_number(factor * v) for v in values]
-    counts = [_number(c.rate), str(c.n), str(c.missing or ""), str(len(c.gaps) or "")]
-    times = [f"{c.start:.6g}", f"{c.end:.6g}"]
-    return [escape(c.name), unit, *counts, *times, *numbers, escape(c.source)]
+    return {
+        "channel": escape(c.name),
+        "unit": unit,
+        "Hz": _number(c.rate),
+        "samples": str(c.n),
+        "NaN": str(c.missing or ""),
+        "gaps": str(len(c.gaps) or ""),
+        "from s": f"{c.start:.6g}" if own_span else "",
+        "to s": f"{c.end:.6g}" if own_span else "",
+        "min": _number(factor * c.minimum),
+        "median": _number(factor * c.median),
+        "max": _number(factor * c.maximum),
+        "step": _number(factor * c.step),
+        "source": escape(c.source),
+    }
 
 
 def _maneuvers(cards: tuple[ManeuverCard, ...]) -> Table:
-    table = Table(title="Maneuvers", title_justify="left")
+    table = _table("Maneuvers")
     for name in ("maneuver", "kind", "aspect", "use"):
-        table.add_column(name)
+        table.add_column(name, no_wrap=True)
     for name in ("from s", "to s", "samples", "gaps"):
-        table.add_column(name, justify="right")
-    table.add_column("at entry", overflow="fold")
+        table.add_column(name, justify="right", no_wrap=True)
+    table.add_column("at entry", min_width=16)
     for m in cards:
         entry = ", ".join(
             f"{name}_deg {_number(math.degrees(value))}" if name in ANGLES

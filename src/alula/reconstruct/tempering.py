@@ -1,8 +1,8 @@
 """A filter run again close to its own result, with what that adds taken out again.
 
 Upwash and wind multiply: a filter that starts far from both, under a wide prior, linearizes about
-estimates that move, and counts the movement as information (Jazwinski 1970, Sec. 9.7; Bell 1994
-calls the cure the iterated smoother). So the unknowns start again near the last result under a
+estimates that move, and counts the movement as information. An iterated smoother (Bell 1994) cures
+this by one fixed line of linearization. So the unknowns start again near the last result under a
 narrower prior. Information about constants is additive, so the narrow prior leaves an exact
 correction: P^-1 loses its information and gets back that of the stated prior.
 """
@@ -17,7 +17,7 @@ from alula.base.arrays import Array
 
 MOST_PASSES = 6
 SETTLED = 0.1  # standard errors: what another pass may still move a constant
-NARROW = 10.0  # standard errors of the last pass: wide against it, narrow against nonlinearity
+NARROW = 0.1  # standard errors of the last pass: what it adds goes, so it may be narrow
 
 
 @dataclass(frozen=True)

@@ -77,7 +77,10 @@ class Transfer:
         if not self.still:
             turn = np.cross(rates, self.arm)
             v = v + turn
-            f = f + np.cross(accelerations, self.arm) + np.cross(rates, turn)
+            # Plain differences: noise in a measured force only widens error bars, smoothing would
+            # blunt it against the controls and draw the estimates with it.
+            sharp = np.gradient(rates, t, axis=0)
+            f = f + np.cross(sharp, self.arm) + np.cross(rates, turn)
             h = h - _down(phi, theta, self.arm)
         u, side, w = v.T
         V = np.sqrt(np.sum(v**2, axis=1))

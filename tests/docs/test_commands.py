@@ -1,0 +1,124 @@
+"""What the pages tell people to type is typed here, on a copy of the demo's logs."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def blocks(page: str, language: str) -> list[str]:
+    """The fenced blocks of one language, in order."""
+    return re.findall(rf"^```{language}\n(.*?)^```", (ROOT / page).read_text(), re.S | re.M)
+
+
+def test_readme_commands_exist() -> None:
+    """`make` targets are in the Makefile; every option shown is one of its command's."""
+    makefile = (ROOT / "Makefile").read_text()
+    lines = [line.split("#")[0] for b in blocks("README.md", "sh") for line in b.splitlines()]
+    targets = [line.split()[1] for line in lines if line.startswith("make ")]
+    assert targets == ["demo", "test"]
+    for target in targets:
+        assert re.search(rf"^{target}:", makefile, re.M)
+    commands = [line.split() for line in lines if line.startswith("alula ")]
+    assert {words[1] for words in commands} == {"new", "check", "identify"}
+    for words in commands:
+        said = run(["alula", words[1], "--help"], ROOT)
+        for option in (word for word in words if word.startswith("--")):
+            assert option in said.stdout
+
+
+def test_real_projects_named_in_the_readme_load(monkeypatch) -> None:
+    from alula.base.project import load_project
+
+    monkeypatch.setenv("ALULA_DATA", "/data")
+    named = re.findall(r"examples/real/\w+\.toml", (ROOT / "README.md").read_text())
+    assert named
+    for path in named:
+        load_project(ROOT / path)
+
+
+def test_tutorial(tmp_path: Path) -> None:
+    """Every command, every edit, in order; it ends as the page says."""
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
+    text = (ROOT / "docs/tutorial.md").read_text()
+    project = tmp_path / "tutorial" / "flight.toml"
+    steps = re.findall(r"^```(sh|toml|diff)\n(.*?)^```", text, re.S | re.M)
+    assert {language for language, _ in steps} == {"sh", "toml", "diff"}
+    for language, block in steps:
+        if language == "sh":
+            for line in block.splitlines():
+                if not line.startswith("source "):
+                    done = run(line.split(), tmp_path)
+                    assert done.returncode == 0, done.stderr
+        elif language == "diff":
+            apply(block, project)
+        elif "# confirm" in block:
+            assert block.strip() in project.read_text()  # quoted from the file, not an edit
+        else:
+            project.write_text(project.read_text() + "\n" + block)
+    result = json.loads((tmp_path / "tutorial/result.json").read_text())
+    found = {p["name"]: p for p in result["result"]["parameters"]}
+    for name in ("Cm_q", "Cl_p"):
+        low, high = found[name]["ci95"]
+        assert low < found[name]["truth"] < high
+        assert f"{found[name]['truth']:g}" in text
+    assert result["result"]["fit"]["Cm"]["n_held_out"] > 0
+    for name in ("report.html", "model.toml"):
+        assert (tmp_path / "tutorial" / name).stat().st_size > 0
+
+
+def test_python_page(tmp_path: Path, monkeypatch) -> None:
+    """Its blocks run in order, in a folder with the demo's logs."""
+    monkeypatch.setenv("MPLBACKEND", "Agg")
+    done = run(["python", str(ROOT / "examples/demo/make_logs.py"), str(tmp_path), "1"], ROOT)
+    assert done.returncode == 0, done.stderr
+    code = blocks("docs/python.md", "python")
+    assert len(code) > 5
+    script = tmp_path / "page.py"
+    script.write_text("\n".join(code))
+    done = run(["python", "page.py"], tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "demo.html").exists()
+
+
+@pytest.mark.parametrize("command", ["new", "check", "identify", "schema"])
+def test_every_option_is_on_the_page(command: str) -> None:
+    page = (ROOT / "docs/command_line.md").read_text()
+    said = run(["alula", command, "--help"], ROOT).stdout
+    options = set(re.findall(r"--[a-z]+", said)) - {"--help", "--output"}
+    assert options
+    for option in options:
+        assert f"`{option}" in page
+
+
+def apply(block: str, file: Path) -> None:
+    """A page's edit: each '-' line begins one line of the file, which becomes the '+' line."""
+    lines = block.splitlines()
+    for old, new in zip(lines[::2], lines[1::2], strict=True):
+        assert (old[:2], new[:2]) == ("- ", "+ ")
+        text = file.read_text().splitlines()
+        (where,) = [i for i, line in enumerate(text) if line.startswith(old[2:])]
+        text[where] = new[2:]
+        file.write_text("\n".join(text) + "\n")
+
+
+def run(words: list[str], folder: Path) -> subprocess.CompletedProcess[str]:
+    """One command in a folder, by this Python's environment."""
+    program = {"python": [sys.executable], "alula": [sys.executable, "-m", "alula"]}[words[0]]
+    return subprocess.run(
+        [*program, *words[1:]],
+        cwd=folder,
+        env={**os.environ, "COLUMNS": "200", "NO_COLOR": "1"},
+        capture_output=True,
+        text=True,
+        timeout=600,
+        check=False,
+    )
