@@ -44,6 +44,11 @@ inline bool careful_update(T (*X)[Columns], int n, T (*Y)[Columns], int ny, int 
   return true;
 }
 
+// Standard deviations grow by less than any digit that is ever shown, and no combination of states
+// is left that rounding could make negative.
+template <class T>
+inline constexpr T kHeldApart = T(1) + T(10) * kPivotFloor<T>;
+
 // P = X X', rows of length R, full. P comes with its diagonal before the update: a variance that
 // has sunk out of sight of it is held where rounding ends.
 template <int R, int Columns, class T>
@@ -56,6 +61,7 @@ inline void covariance_of(const T (*X)[Columns], int n, int columns, T (*P)[R]) 
       P[i][j] = P[j][i] = s;
     }
     if (!(P[i][i] > floor)) P[i][i] = floor;
+    P[i][i] *= kHeldApart<T>;
   }
 }
 

@@ -84,6 +84,7 @@ class Extended {
     T U[R][R];
     const int raised = cholesky<R>(P, U, n);
     if (raised > 0) multiply_back<R>(U, P, n);
+    for (int i = 0; i < n; ++i) P[i][i] *= kHeldApart<T>;
     repairs += raised > 0 ? raised : 0;
     return raised >= 0;
   }
