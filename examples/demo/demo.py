@@ -20,7 +20,7 @@ def main() -> int:
     """Simulate, identify, report; the exit code is that of `alula identify`."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--folder", type=Path, default=Path("build/demo"))
-    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--seed", type=int, default=2)
     args = parser.parse_args()
     args.folder.mkdir(parents=True, exist_ok=True)
     files = simulate_demo(args.seed, args.folder)

@@ -12,7 +12,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from alula.base.messages import refuse, warn
+from alula.base.messages import note, refuse, warn
 from alula.report import render
 from report.example import MANEUVERS, example
 
@@ -210,6 +210,111 @@ def test_a_method_without_innovations_shows_residuals() -> None:
     assert "measured − fitted (m/s)" in text
     assert "innovation (m/s)" not in text
     assert "NaN" not in re.sub(r"<script.*?</script>", "", text, flags=re.S)
+
+
+def test_a_reconstruction_alone_has_its_own_verdict() -> None:
+    report = example()
+    assert report.identification is not None
+    nothing = replace(
+        report.identification, parameters=(), fits={}, series=(), covariance=np.zeros((0, 0))
+    )
+    text = render(replace(report, identification=nothing))
+    assert "All 0 parameters" not in text
+    assert "these constants are not observable: k_beta" in text
+    assert 'id="reconstruction"' in text
+    for gone in ("parameters", "coefficients", "correlation"):
+        assert f'id="{gone}"' not in text
+
+
+def test_innovations_are_scaled_to_their_usual_band() -> None:
+    """A filter's first samples, with the band of the initial covariance, flatten nothing."""
+    report = example()
+    assert report.reconstruction is not None
+    segment = report.reconstruction.segments[0]
+    n = len(segment.sensors[0].t)
+    first = np.arange(n) < 4
+    wave = np.sin(np.arange(n))
+    sensor = replace(
+        segment.sensors[0],  # airspeed, m/s: not converted
+        innovation=np.where(first, -30.0, 0.3 * wave),
+        innovation_se=np.where(first, 20.0, 0.25),
+    )
+    segments = (replace(segment, sensors=(sensor,)),)
+    text = render(replace(report, reconstruction=replace(report.reconstruction, segments=segments)))
+    data = json.loads(re.search(r'id="alula-plots">(.*?)</script>', text, re.S)[1])  # type: ignore[index]
+    (limit,) = [p["limit"] for f in data["figures"] for p in f["panels"] if p["limit"]]
+    assert limit == 1.0  # four times the median standard deviation of 0.25
+    assert "4 of 626 innovations beyond this axis" in text
+    assert "−30.0\u00a0m/s at 0\u00a0s" in text
+
+
+def test_constant_states_are_told_by_the_table_and_not_drawn() -> None:
+    report = example()
+    assert report.reconstruction is not None
+    segment = report.reconstruction.segments[0]
+    n = len(segment.motion.t)
+    added = replace(
+        segment,
+        state_names=(*segment.state_names, "b_ax", "b_q"),
+        states=np.column_stack([segment.states, np.full(n, 0.03), np.linspace(0, 1e-3, n)]),
+        states_se=np.column_stack([segment.states_se, np.full(n, 0.001), np.full(n, 1e-4)]),
+    )
+    changed = replace(report.reconstruction, segments=(added,))
+    text = render(replace(report, reconstruction=changed))
+    assert "<code>b_ax</code>: one value throughout" in text
+    assert "<strong>b_q, bias of pitch rate</strong>" in text  # a walking bias is drawn
+    assert "<strong>b_ax, " not in text
+
+
+def test_many_notes_of_one_kind_fold_and_each_is_there() -> None:
+    report = example()
+    notes = tuple(
+        note(
+            "converted", where=f"/data/flights/one.csv: channel c{k}", expected="as recorded",
+            found=f"column {k} in deg", do="It is now in rad.",
+        )
+        for k in range(45)
+    )  # fmt: skip
+    bad = tuple(
+        warn("odd", where=f"channel w{k}", expected="x", found="y", do="z") for k in range(5)
+    )
+    text = render(replace(report, messages=(*notes, *bad)))
+    after = text.partition('id="messages"')[2].partition('id="provenance"')[0]
+    (folded,) = re.findall(r"<details><summary>(?:(?!</details>).)*channel c0.*?</details>", after)
+    assert all(f"column {k} in deg" in folded for k in range(45))
+    assert after.count("<code>converted</code>") == 1
+    assert after.count("<code>odd</code>") == 5, "warnings stay one by one"
+    assert after.index("channel w4") < after.index("channel c0"), "and come first"
+    assert ">one.csv: channel c7<" in folded
+    assert 'title="/data/flights/one.csv: channel c7"' in folded
+
+
+def test_long_paths_and_hashes_are_short_in_sight_and_whole_in_provenance() -> None:
+    report = example()
+    path, digest = "/home/someone/campaign 3/fAttasElv1.mat", "0123456789abcdef" * 4
+    file = replace(report.cards[0].files[0], path=path, sha256=digest)
+    cards = (replace(report.cards[0], files=(file,)),)
+    text = render(replace(report, cards=cards, path="/home/someone/attas.toml"))
+    before, _, provenance = text.partition('id="provenance"')
+    assert f'<code title="{path}">fAttasElv1.mat</code>' in before
+    assert f'<code title="{digest}">0123456789ab…</code>' in before
+    assert '<code title="/home/someone/attas.toml">attas.toml</code>' in before
+    assert path in provenance
+    assert digest in provenance
+
+
+def test_truth_stands_beside_the_estimate() -> None:
+    report = example()
+    assert report.identification is not None
+    first, *rest = report.identification.parameters
+    known = replace(first, truth=1.2345)
+    text = render(
+        replace(report, identification=replace(report.identification, parameters=(known, *rest)))
+    )
+    row = re.search(rf"<tr><th scope=\"row\"><code>{re.escape(first.name)}</code>.*?</tr>", text)
+    assert row is not None
+    assert ">1.234<" in row[0] or ">1.235<" in row[0]
+    assert 'class="truth"' in row[0]
 
 
 def test_every_message_is_there_once(text: str) -> None:

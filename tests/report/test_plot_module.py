@@ -84,6 +84,35 @@ def test_no_line_is_drawn_across_a_gap_in_time(module: Any) -> None:
     assert min(red[5:200]) > 0
 
 
+def test_given_breaks_decide_and_not_the_steps(module: Any) -> None:
+    """Of a thinned curve only the page's maker knows where time was lost."""
+    t = [0.0, 0.1, 0.2, 0.3, 5.0, 5.1, 5.2, 5.3, 9.0, 9.1, 9.2, 10.0]
+    draw = DRAW.replace("Float64Array.from(t))", "Float64Array.from(t), [8])")
+    red = module.evaluate(draw, [t, [0.0] * len(t), None, None])
+    assert min(red[round(0.05 * 536) : round(0.51 * 536)]) > 0, "no break was given at 5 s"
+    assert max(red[round(0.55 * 536) : round(0.88 * 536)]) == 0, "one was given at 9 s"
+
+
+def test_a_limit_holds_until_zoomed_in(module: Any) -> None:
+    """One wild sample of a thousand at 0 s: the axis shows the others, and it after zooming."""
+    heights = module.evaluate("""() => {
+      const y = Float32Array.from({length: 1001}, (_, i) => i ? Math.sin(i) : 500);
+      const link = new AlulaLink.Link(), host = document.getElementById('host');
+      const plot = new AlulaPlot.Plot(host, {panels: [{label: 'y', small: true, limit: 4, bands: [],
+        lines: [{name: 'y', style: 'residual', y}]}]},
+        AlulaSeries.Times.uniform(0, 0.01, 1001), link);
+      const scale = () => plot.scaleOf(plot.panels[0], ...plot.window());
+      const all = scale();
+      link.set(0, 0.5);
+      const near = scale();
+      link.set(5, 5.5);
+      return [all, near, scale()];
+    }""")
+    assert heights[0] == [-4, 4]
+    assert heights[1][1] > 500
+    assert 1 < heights[2][1] < 1.5  # the sine with the usual margin
+
+
 def test_extremes_agree_with_a_plain_search(module: Any) -> None:
     worst = module.evaluate("""() => {
       let seed = 1, worst = 0;

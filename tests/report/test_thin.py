@@ -6,7 +6,8 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from alula.report.thin import kept_samples
+from alula.report.figures import Figure, FigureStore, Line, Panel
+from alula.report.thin import breaks, kept_breaks, kept_samples
 
 
 @given(st.integers(0, 2**32 - 1), st.integers(20, 3000), st.integers(10, 400))
@@ -43,3 +44,35 @@ def test_a_column_without_a_value() -> None:
     keep = kept_samples((np.full(5000, np.nan), np.arange(5000.0)), 100)
     assert keep is not None
     assert {0, 4999} <= set(keep.tolist())
+
+
+def test_a_break_stays_between_the_same_two_samples() -> None:
+    t = np.concatenate([np.arange(0.0, 40.0, 0.01), np.arange(45.0, 90.0, 0.01)])
+    at = breaks(t)
+    assert at.tolist() == [4000]  # the first sample after the five seconds without any
+    keep = kept_samples((np.sin(t),), 300, at)
+    assert keep is not None
+    (k,) = kept_breaks(at, keep)
+    assert keep[k - 1 : k + 1].tolist() == [3999, 4000]
+
+
+def test_one_lost_sample_is_no_break() -> None:
+    t = np.delete(np.arange(0.0, 10.0, 0.01), [300, 301])  # two intervals are bridged by a line
+    assert breaks(t).tolist() == []
+
+
+def test_what_is_left_out_for_the_eye_is_no_gap() -> None:
+    """Steps between the samples of a thinned curve differ widely; none of them is a gap."""
+    t = np.linspace(0.0, 20.0, 2001)
+    store = FigureStore(300)
+    panel = Panel("y", (Line("y", np.sin(t) * np.exp(-t / 5), "estimate"),))
+    assert "samples" in store.add(Figure("smooth", "m", t, (panel,)))
+    carried = store._figures[0]["t"]
+    assert carried["breaks"] == []
+
+
+def test_the_budget_is_used() -> None:
+    random = np.random.default_rng(3)
+    keep = kept_samples(tuple(random.standard_normal((6, 20_000))), 2000)
+    assert keep is not None
+    assert len(keep) > 1500  # the promise alone, three samples per column, would keep about 1300

@@ -60,6 +60,14 @@ def check_project(
             found="none",
             do='Add aircraft = "my_aircraft.toml".',
         )
+    if not project.aircraft.exists():
+        raise refuse(
+            "missing_aircraft",
+            where=f"{path}: aircraft",
+            expected="the path of an aircraft file, from the project's folder",
+            found=f"no file {project.aircraft}",
+            do="Name a ready one or write one; docs/aircraft_file.md shows how.",
+        )
     aircraft = load_aircraft(project.aircraft)
     progress("reading logs")
     flights = read_all(project)

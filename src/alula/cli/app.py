@@ -17,7 +17,6 @@ from alula.cli.schema import schema
 
 app = typer.Typer(
     name="alula",
-    help="Turns flight logs into flight models you can trust.",
     no_args_is_help=True,
     add_completion=False,
     rich_markup_mode=None,

@@ -24,13 +24,13 @@ WIDTH = 130  # characters that the tables of a log card ask for
 
 
 def check(
-    project: Annotated[Path, typer.Argument(help="The project file.")],
+    project: Annotated[Path, typer.Argument(metavar="PROJECT", help="The project file.")],
     json: JsonOption = "",
     seed: SeedOption = None,
     threads: ThreadsOption = 0,
     quiet: QuietOption = False,
 ) -> None:
-    """Read a project's logs and say what is in them and what looks wrong.
+    """Say what is in a project's logs, and what looks wrong.
 
     Exit 0: usable. 1: usable, but a check failed. 2: bad input.
     """

@@ -27,9 +27,14 @@ EXIT: Mapping[Status, int] = {"ok": 0, "not_identifiable": 1, "check_failed": 1,
 JsonOption = Annotated[
     str, typer.Option("--json", metavar="FILE|-", help="Write the result as JSON; - is stdout.")
 ]
-SeedOption = Annotated[int | None, typer.Option("--seed", help="Seed of anything random.")]
+SeedOption = Annotated[
+    int | None, typer.Option("--seed", metavar="N", help="Seed of anything random.")
+]
 ThreadsOption = Annotated[
-    int, typer.Option("--threads", min=0, help="Threads to use; 0 leaves it to the libraries.")
+    int,
+    typer.Option(
+        "--threads", metavar="N", min=0, help="Threads to use; 0 leaves it to the libraries."
+    ),
 ]
 QuietOption = Annotated[
     bool, typer.Option("--quiet", help="No progress and no notes; warnings stay.")

@@ -38,23 +38,29 @@ class Method(StrEnum):
 
 
 def identify(
-    project: Annotated[Path, typer.Argument(help="The project file.")],
+    project: Annotated[Path, typer.Argument(metavar="PROJECT", help="The project file.")],
     method: Annotated[Method | None, typer.Option(help="Instead of the project's.")] = None,
     filter: Annotated[Filter | None, typer.Option(help="Instead of the project's.")] = None,
     maneuver: Annotated[
-        list[str] | None, typer.Option(help="Only this maneuver; may be given several times.")
+        list[str] | None,
+        typer.Option(metavar="ID", help="Only this maneuver; may be given several times."),
     ] = None,
-    report: Annotated[Path | None, typer.Option(help="Write the HTML report there.")] = None,
-    model: Annotated[Path | None, typer.Option(help="Write the identified model there.")] = None,
+    report: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write the HTML report there.")
+    ] = None,
+    model: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write the identified model there.")
+    ] = None,
     truth: Annotated[
-        Path | None, typer.Option(help='JSON {"parameters": {name: value}} to set beside.')
+        Path | None,
+        typer.Option(metavar="FILE", help='JSON {"parameters": {name: value}} to set beside.'),
     ] = None,
     json: JsonOption = "",
     seed: SeedOption = None,
     threads: ThreadsOption = 0,
     quiet: QuietOption = False,
 ) -> None:
-    """Identify the aircraft's derivatives from its logs, with error bars and verdicts.
+    """Identify derivatives, with error bars and verdicts.
 
     Exit 0: every parameter is determined. 1: the data cannot tell some; they read
     not_identifiable. 2: bad input.

@@ -18,18 +18,19 @@ from alula.cli.contract import (
 
 
 def new(
-    log: Annotated[Path, typer.Argument(help="The flight log.")],
+    log: Annotated[Path, typer.Argument(metavar="LOG", help="The flight log.")],
     output: Annotated[
-        Path | None, typer.Option("--output", "-o", help="Project file [LOG's name .toml, here].")
+        Path | None,
+        typer.Option("--output", "-o", metavar="FILE", help="Default: LOG's name, .toml, here."),
     ] = None,
     json: JsonOption = "",
     seed: SeedOption = None,
     threads: ThreadsOption = 0,
     quiet: QuietOption = False,
 ) -> None:
-    """Write a project file for a log, with every channel that can be guessed.
+    """Write a project file for a log, channels guessed.
 
-    Guesses are marked: confirm them before you believe a result.
+    Every guess is marked: confirm it before you believe a result.
     """
     command = Command("new", json, seed, threads, quiet)
     with command.run():
@@ -51,6 +52,6 @@ def new(
         write_whole(path, new_project(log, path.absolute().parent))
         command.result = {"project": str(path)}
         command.say(
-            f"{path} written. Confirm its channels, name the aircraft file and the maneuvers,\n"
+            f"{path} written. Confirm the lines marked so: channels, aircraft file, maneuvers;\n"
             f"then: alula check {path}"
         )

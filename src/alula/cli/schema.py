@@ -24,13 +24,15 @@ class Kind(StrEnum):
 
 
 def schema(
-    kind: Annotated[Kind, typer.Argument(help="Which file's schema.")] = Kind.project,
+    kind: Annotated[
+        Kind, typer.Argument(metavar="KIND", help="Which file's schema.")
+    ] = Kind.project,
     json: JsonOption = "",
     seed: SeedOption = None,
     threads: ThreadsOption = 0,
     quiet: QuietOption = False,
 ) -> None:
-    """Print the JSON schema of the project or the aircraft file.
+    """Print the JSON schema of a project or aircraft file.
 
     Editors that know JSON schemas for TOML complete and check the files with it.
     """

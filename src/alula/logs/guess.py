@@ -15,6 +15,7 @@ from alula.base.project import LogSpec
 from alula.base.units import CHANNELS, find_unit, known_channel
 from alula.logs.address import Column
 from alula.logs.fill import HUGE, looks_filled
+from alula.logs.first_model import model_lines, reconstruct_lines
 from alula.logs.plausibility import doubt_of
 from alula.logs.reader import read_tables
 from alula.logs.synonyms import guess_name
@@ -82,8 +83,9 @@ def new_project(log_path: Path | str, folder: Path | str | None = None) -> str:
     lines += [f"# {_comment(str(m))}" for m in (*messages, *tables.messages)]
     lines += ["", "[channels]", *_channel_lines(guesses), *_maneuver_lines(log.id, guesses)]
     names = {g.name for g in guesses}
+    lines += reconstruct_lines(names)
     lines += ["", "[identify]  # confirm: the formulas to fit"]
-    lines += ["[identify.models]", *_models(names), ""]
+    lines += ["[identify.models]", *model_lines(names), ""]
     return "\n".join(lines)
 
 
@@ -259,19 +261,6 @@ def _maneuver_lines(log: str, guesses: list[Guess]) -> list[str]:
         f"start = {start:.10g}  # confirm",
         f"end = {stop:.10g}  # confirm",
         'aspect = "both"  # confirm: longitudinal, lateral or both',
-    ]
-
-
-def _models(names: set[str]) -> list[str]:
-    longitudinal = "1 + alpha + qhat" + (" + de" if "de" in names else "")
-    da, dr = (" + da" if "da" in names else ""), (" + dr" if "dr" in names else "")
-    return [
-        'CX = "1 + alpha + alpha^2"',
-        f'CZ = "{longitudinal}"',
-        f'Cm = "{longitudinal}"',
-        f'CY = "1 + beta + phat + rhat{dr}"',
-        f'Cl = "1 + beta + phat + rhat{da}{dr}"',
-        f'Cn = "1 + beta + phat + rhat{da}{dr}"',
     ]
 
 

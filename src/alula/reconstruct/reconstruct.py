@@ -67,7 +67,7 @@ def reconstruct(
         constants += found
         covariances.append(solution.covariance)
         messages += [*problem.messages, *solution.messages, *said]
-        messages += _skews(problem, solution)
+        messages += _skews(problem, solution, f", {group}" if len(groups) > 1 else "")
         nis, readings = nis + solution.nis, readings + solution.readings
         status, converged = solution.status, converged and solution.converged
         for k, maneuver in enumerate(members):
@@ -140,7 +140,8 @@ def _constants(
     return out, messages
 
 
-def _skews(problem: Problem, solution: Solution) -> list[Message]:
+def _skews(problem: Problem, solution: Solution, where: str) -> list[Message]:
+    """A warning for each delay that matters, a note for every other one. where: ', maneuver'."""
     out = []
     dt = float(np.median(np.diff(problem.records[0].t)))
     for skew in time_skews(problem, solution):
@@ -148,7 +149,7 @@ def _skews(problem: Problem, solution: Solution) -> list[Message]:
             out.append(
                 warn(
                     "time_skew",
-                    where=f"channel {skew.channel}",
+                    where=f"channel {skew.channel}{where}",
                     expected="stamps in step with the inertial sensor's",
                     found=f"{abs(skew.delay_s):.3f} s {'late' if skew.delay_s > 0 else 'early'}, "
                     f"standard error {skew.se:.3f} s",
@@ -160,9 +161,10 @@ def _skews(problem: Problem, solution: Solution) -> list[Message]:
             out.append(
                 note(
                     "time_skew",
-                    where=f"channel {skew.channel}",
+                    where=f"channel {skew.channel}{where}",
                     expected="stamps in step with the inertial sensor's",
-                    found=f"{skew.delay_s:+.4f} s, standard error {skew.se:.4f} s",
+                    found=f"{abs(skew.delay_s):.4f} s {'late' if skew.delay_s > 0 else 'early'}, "
+                    f"standard error {skew.se:.4f} s",
                     do="Nothing: within three standard errors of none, or under half a sample.",
                 )
             )

@@ -112,10 +112,11 @@ const AlulaPlot = (() => {
       if (low > high) { low = -1; high = 1; }
       panel.clipped = panel.limit && this.link.high - this.link.low > 0.1 * (this.link.end - this.link.start);
       if (panel.clipped) return [-panel.limit, panel.limit];
-      // A band may widen the axis to three times the curves' range or to its usual width, not
-      // flatten them; a curve that hardly changes keeps numbers that can be read.
+      // A band may widen the axis to three times the curves' range, not flatten them; beside a
+      // curve that hardly changes it is shown whole, and the axis keeps numbers that can be read.
       const least = 1e-5 * Math.max(Math.abs(low), Math.abs(high)) || 1e-12;
-      const room = Math.max(high - low, least, ...panel.bands.map((b) => 2 * b.usual));
+      const usual = Math.max(0, ...panel.bands.map((b) => b.usual));
+      const room = high - low > 1e-3 * usual ? Math.max(high - low, least) : 2 * usual;
       const short = Math.max(0, least - (high - low)) / 2;
       low -= short; high += short;
       let bottom = low, top = high;
@@ -337,7 +338,10 @@ const AlulaPlot = (() => {
       c.textAlign = "center";
       c.textBaseline = "top";
       c.fillStyle = this.color.muted;
-      for (const v of values) c.fillText(format(v, step), this.x(v), bottom + 4);
+      for (const v of values) {
+        const text = format(v, step), half = c.measureText(text).width / 2;
+        c.fillText(text, Math.min(this.x(v), this.width - half - 1), bottom + 4);
+      }
       c.textBaseline = "bottom";
       c.fillStyle = this.color.ink;
       c.fillText("time in the log, s", (LEFT + this.width - RIGHT) / 2, height - 1);

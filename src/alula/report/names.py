@@ -68,7 +68,13 @@ def unit_of(name: str) -> str:
 
 
 def meaning(name: str) -> str:
-    """'bias of angle of attack' for 'b_alpha'; empty where the name has no words."""
+    """'bias of angle of attack' for 'b_alpha'; empty where the name has no words.
+
+    One that belongs to a single maneuver says so: 'bias of sideslip, rudder' for 'b_beta[rudder]'.
+    """
+    base, bracket, owner = name.partition("[")
+    if bracket:
+        return f"{meaning(base)}, {owner.removesuffix(']')}" if meaning(base) else ""
     for start, kind in (("b_", "bias of "), ("k_", "scale error of ")):
         if name.startswith(start):
             base = name.removeprefix(start)

@@ -110,18 +110,32 @@ _HOW_TO = tag(
 
 def most_samples(report: ReportInput) -> int:
     """Samples that each figure may carry so that all of them fit the budget."""
-    columns = 0
+    values = _BUDGET * 3 / 16  # of float32 in base64
+    sizes = sorted(_sizes(report))
+    columns = sum(c for _, c in sizes)
+    for samples, wide in sizes:  # what a short figure leaves over goes to the long ones
+        if samples * columns > values:
+            return max(_LEAST, int(values / columns))
+        values -= samples * wide
+        columns -= wide
+    return max(_LEAST, sizes[-1][0] if sizes else 0)
+
+
+def _sizes(report: ReportInput) -> list[tuple[int, int]]:
+    """(samples, columns) of what is to be drawn, about.
+
+    Thinned figures have times of their own, of twice the size of a value: two columns each.
+    """
+    sizes = []
     if report.reconstruction is not None:
         for segment in report.reconstruction.segments:
             drawn = len(segment.state_names) - len(steady_states(segment))
-            columns += 2 * drawn + 16 + len(segment.motion.controls)
-            columns += 4 * len(segment.sensors)
-            # thinned figures have times of their own, of twice the size of a value
-            columns += 2 * (drawn // 2 + 7 + len(segment.sensors))
+            columns = 2 * drawn + 16 + len(segment.motion.controls) + 2 * (drawn // 2 + 7)
+            sizes.append((len(segment.motion.t), columns))
+            sizes += [(len(s.t), 6) for s in segment.sensors]
     if report.identification is not None:
-        columns += 5 * len(report.identification.series)
-    per_value = 4 * 4 / 3  # float32 in base64
-    return max(_LEAST, int(_BUDGET / (per_value * max(columns, 1))))
+        sizes += [(len(s.t), 5) for s in report.identification.series]
+    return sizes
 
 
 def _running_head(report: ReportInput) -> str:

@@ -51,7 +51,7 @@ def _pairs(names: list[str], r: Array) -> Html:
         f"Pairs correlated above {_STRONG}: read them together, not one by one.",
         ["First", "Second", "Correlation"],
         (
-            [tag("code", names[i[k]]), tag("code", names[j[k]]), number(float(r[i[k], j[k]]), 3)]
+            [tag("code", names[i[k]]), tag("code", names[j[k]]), number(float(r[i[k], j[k]]), 4)]
             for k in order
         ),
         numeric=(2,),

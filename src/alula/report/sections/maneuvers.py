@@ -19,7 +19,7 @@ def maneuvers(report: ReportInput) -> Html:
         rows.append(
             [
                 tag("code", m.id),
-                m.kind,
+                m.kind.replace("_", " "),
                 m.log,
                 span(m.start, m.end),
                 card.samples if card else MISSING,

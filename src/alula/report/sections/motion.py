@@ -12,7 +12,7 @@ from alula.flight import Maneuver, Motion
 from alula.reconstruct.result import Segment, SensorFit
 from alula.report.figures import Band, Figure, Line, Panel
 from alula.report.names import titled, unit_of
-from alula.report.numbers import number, shown
+from alula.report.numbers import compact, number, shown
 
 _MOTION = {
     "Air data": ("V", "alpha", "beta"),
@@ -157,6 +157,6 @@ def _beyond(t: Array, values: Array, limit: float | None, what: str, unit: str) 
     k = int(size.argmax())
     return (
         f"{count} of {len(t)} {what} beyond this axis, marked at its edge; the largest is "
-        f"{number(values[k], 3)} {unit} at {number(t[k], 4)} s. Zoom in to less than a tenth of "
-        "the time to see them."
+        f"{number(float(values[k]), 3)}\u00a0{unit} at {compact(float(t[k]))}\u00a0s. "
+        "Zoom in to less than a tenth of the time to see them."
     )

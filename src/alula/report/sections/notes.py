@@ -71,22 +71,18 @@ def _group(members: Sequence[Message]) -> Html:
     lines = tag("ul", *(tag("li", _line(m)) for m in members), class_="plain")
     if len(members) < _FOLDED:
         return lines
-    first = members[0]
-    beginning = join(
-        [_short(first.where), f": {_shortened(first.found)}", f" and {len(members) - 1} more"]
-    )
+    beginning = join([_fact(members[0]), f", and {len(members) - 1} more"])
     return tag("details", tag("summary", beginning), lines)
 
 
 def _line(m: Message) -> Html:
     """'channel q: column 8 in deg/s (expected: as recorded). It is now in rad/s.'"""
-    return join(
-        [
-            tag("strong", _short(m.where)),
-            f": {_shortened(m.found)} (expected: {_shortened(m.expected)}). ",
-            _short(m.do),
-        ]
-    )
+    return join([_fact(m), ". ", _short(m.do)])
+
+
+def _fact(m: Message) -> Html:
+    """'channel q: column 8 in deg/s (expected: as recorded)'"""
+    return join([_short(m.where), f": {_shortened(m.found)} (expected: {_shortened(m.expected)})"])
 
 
 def _shortened(text: str) -> str:

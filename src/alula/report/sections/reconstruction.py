@@ -19,7 +19,8 @@ from alula.report.sections.summary import method_words, sentence
 def reconstruction(result: Reconstruction, figures: FigureStore) -> Html:
     """Tables of the whole reconstruction, then the plots of each maneuver."""
     level = "good" if result.converged else "bad"
-    words = f"Method: {method_words(result.method)}. {sentence(result.status)}"
+    status = sentence(result.status[:1].upper() + result.status[1:])
+    words = f"Method: {method_words(result.method)}. {status}"
     return join(
         [
             tag("p", mark(level, words, long=True)),
@@ -163,8 +164,8 @@ def _steady(segment: Segment) -> Html:
     if not names:
         return Html("")
     codes = Html(", ".join(tag("code", name) for name in names))
-    words = "keep one value: see the table of constants above."
-    return tag("p", codes, f" {'each ' if len(names) > 1 else ''}{words}", class_="note")
+    words = ": one value throughout, in the table of constants above."
+    return tag("p", codes, words, class_="note")
 
 
 def _segment(segment: Segment, figures: FigureStore) -> Html:
@@ -183,6 +184,8 @@ def _segment(segment: Segment, figures: FigureStore) -> Html:
         ),
     ]
     held = tag("span", "held out", class_="tag") if maneuver.held_out else ""
-    kind = f" ({maneuver.kind}) " if maneuver.kind else " "
+    kind = (
+        f" ({maneuver.kind.replace('_', ' ')}) " if maneuver.kind not in ("", maneuver.id) else " "
+    )
     heading = tag("h3", "Maneuver ", tag("code", maneuver.id), kind, held)
     return tag("section", heading, *grid, class_="maneuver")
