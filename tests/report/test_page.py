@@ -248,6 +248,23 @@ def test_innovations_are_scaled_to_their_usual_band() -> None:
     assert "−30.0\u00a0m/s at 0\u00a0s" in text
 
 
+def test_constants_of_each_maneuver_share_a_row() -> None:
+    report = example()
+    assert report.reconstruction is not None
+    first = report.reconstruction.constants[0]
+    both = (
+        replace(first, name="b_ax[elevator]"),
+        replace(first, name="b_ax[rudder]", value=0.5, se=0.1, observable=False),
+    )
+    changed = replace(report.reconstruction, constants=both, constants_cov=np.eye(2))
+    text = render(replace(report, reconstruction=changed))
+    (row,) = re.findall(r'<tr><th scope="row"><code>b_ax</code>.*?</tr>', text)
+    assert "0.0312 ± 0.0011" in row
+    assert re.search(r"0\.50 ± 0\.10.*not observable", row)
+    assert row.count("not observable") == 1
+    assert "<code>elevator</code></th>" in text
+
+
 def test_constant_states_are_told_by_the_table_and_not_drawn() -> None:
     report = example()
     assert report.reconstruction is not None

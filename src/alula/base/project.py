@@ -208,6 +208,9 @@ class ReconstructSpec(Strict):
         default={}, description="by maneuver: motion states at its first sample, where known better"
     )
     smoothing_window_s: float = Field(default=0.0, ge=0, description="0: the method chooses")
+    vibration_filter_hz: float = Field(
+        default=0.0, ge=0, description="low-pass of inertial channels and controls; 0: none"
+    )
     imu: dict[Literal["ax", "ay", "az", "p", "q", "r"], NoiseSpec] = {}
     unknowns: dict[str, UnknownSpec] = {}
     sensors: dict[str, SensorSpec] = {}

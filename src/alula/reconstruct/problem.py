@@ -125,7 +125,8 @@ def make_problem(
             found=str(len(sensors)),
             do="Switch some off with use = false.",
         )
-    unknowns = choose_unknowns(sensors, spec.unknowns)
+    unknowns, said = _without_drift(choose_unknowns(sensors, spec.unknowns), sensors)
+    messages = messages + said
     free = tuple(u for u in unknowns if u.free)
     motion = 9 if any(s.kind in ("north", "east") for s in sensors) else 7
     if motion + len(free) > core.MAX_STATES:
@@ -138,7 +139,9 @@ def make_problem(
         )
     records = []
     for maneuver in maneuvers:
-        record, said = make_record(flights[maneuver.log], maneuver, sensors)
+        record, said = make_record(
+            flights[maneuver.log], maneuver, sensors, spec.vibration_filter_hz
+        )
         records.append(record)
         messages += said
     free = _windy_start(records[0], sensors, free, spec)
@@ -161,6 +164,28 @@ def make_problem(
         messages=tuple(messages + _doubts(records, sensors)),
     )
     return problem
+
+
+def _without_drift(
+    unknowns: tuple[Unknown, ...], sensors: Sequence[Sensor]
+) -> tuple[tuple[Unknown, ...], list[Message]]:
+    """Horizontal wind is held where nothing is measured against the ground: all motion relative to
+    a steadily drifting air mass is the same (Galileo), whatever a linearized filter seems to learn.
+    """
+    if any(s.kind in ("v_north", "v_east", "north", "east") for s in sensors):
+        return unknowns, []
+    held = [u.name for u in unknowns if u.free and u.name in ("wind_n", "wind_e")]
+    said = [
+        warn(
+            "not_observable",
+            where=f"unknown {name}",
+            expected="a speed or position over ground",
+            found="air data and inertial sensors alone",
+            do=f"It is held at its stated value. Map GPS channels, or take {name} out.",
+        )
+        for name in held
+    ]
+    return tuple(replace(u, free=False) if u.name in held else u for u in unknowns), said
 
 
 def _first(values: Array) -> float:

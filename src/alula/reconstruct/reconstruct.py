@@ -12,7 +12,7 @@ from alula.base.arrays import Array
 from alula.base.messages import Message, note, warn
 from alula.base.project import ReconstructSpec
 from alula.core import core
-from alula.flight import Flight, Maneuver
+from alula.flight import Flight, Maneuver, Motion
 from alula.reconstruct.compare import compare_duplicates
 from alula.reconstruct.kalman import solve_ekf, solve_ukf
 from alula.reconstruct.maximum_likelihood import solve_ml
@@ -181,9 +181,11 @@ def _segment(
     messages: list[Message],
 ) -> Segment:
     record, found = problem.records[k], solution.records[k]
-    window = spec.smoothing_window_s
-    transfer = Transfer(problem, record, flight, aircraft, window)
+    transfer = Transfer(
+        problem, record, flight, aircraft, spec.smoothing_window_s, spec.vibration_filter_hz
+    )
     motion = transfer.motion(found.states)
+    messages.append(_differentiated(transfer, motion))
     if transfer.rho is None:
         messages.append(
             note(
@@ -203,6 +205,22 @@ def _segment(
         sensors=tuple(_sensor(problem, solution, k, i) for i in range(len(problem.sensors))),
         mismatch=_mismatch(problem, solution, k),
         perturbed=tuple(transfer.motion(found.states + shift) for shift in found.doubt),
+    )
+
+
+def _differentiated(transfer: Transfer, motion: Motion) -> Message:
+    """Window and error of the angular accelerations, in words."""
+    errors = ", ".join(
+        f"{name} {transfer.cubic.derivative_se(getattr(motion, rate)):.2g}"
+        for name, rate in (("pdot", "p"), ("qdot", "q"), ("rdot", "r"))
+    )
+    return note(
+        "differentiated",
+        where=f"maneuver {motion.maneuver.id}",
+        expected="angular accelerations",
+        found=f"rates; local cubics over {transfer.cubic.window_s:.3g} s differentiate them with "
+        f"standard errors {errors} rad/s2",
+        do="Nothing: all that stands beside them in a moment equation passes the same filter.",
     )
 
 

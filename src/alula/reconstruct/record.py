@@ -16,6 +16,7 @@ from alula.base.messages import Message, note, refuse
 from alula.flight import Flight, Maneuver
 from alula.reconstruct.sensors import Sensor
 from alula.reconstruct.unknowns import INERTIAL
+from alula.reconstruct.vibration import aliasing, filtered, lowpass
 
 LEAST = 20  # samples; fewer do not carry a dozen unknowns
 _EARTH_A, _EARTH_F = 6378137.0, 1.0 / 298.257223563  # WGS-84
@@ -36,9 +37,15 @@ class Record:
 
 
 def make_record(
-    flight: Flight, maneuver: Maneuver, sensors: Sequence[Sensor]
+    flight: Flight,
+    maneuver: Maneuver,
+    sensors: Sequence[Sensor],
+    vibration_filter_hz: float = 0.0,
 ) -> tuple[Record, list[Message]]:
-    """Cut one maneuver out of its flight. Raises BadInput where an inertial channel is missing."""
+    """Cut one maneuver out of its flight; inertial channels are low-passed where that is asked for.
+
+    Raises BadInput where an inertial channel is missing.
+    """
     messages: list[Message] = []
     where = f"maneuver {maneuver.id}"
     t = flight["ax"].t
@@ -66,6 +73,11 @@ def make_record(
             )
         )
     inputs = np.column_stack([_input(flight, name, grid, t, where, messages) for name in INERTIAL])
+    messages += aliasing(grid[base], inputs[base], INERTIAL, maneuver)
+    if vibration_filter_hz > 0.0:
+        smooth = lowpass(t, inputs[base], vibration_filter_hz)
+        inputs = np.column_stack([np.interp(grid, t, column) for column in smooth.T])
+        messages.append(filtered(vibration_filter_hz, maneuver))
     readings = np.full((len(grid), len(sensors)), np.nan)
     for column, sensor in enumerate(sensors):
         times, values = own[sensor.channel]

@@ -17,6 +17,7 @@ from alula.flight import Flight, Motion
 from alula.reconstruct.problem import Problem
 from alula.reconstruct.record import Record, channel_on
 from alula.reconstruct.unknowns import INERTIAL, WIND
+from alula.reconstruct.vibration import lowpass
 
 CONTROLS = ("de", "da", "dr", "df", "dt")
 
@@ -31,6 +32,7 @@ class Transfer:
         flight: Flight,
         aircraft: Aircraft,
         window_s: float,
+        vibration_filter_hz: float = 0.0,
     ) -> None:
         self.problem, self.record = problem, record
         t = record.t[record.base]
@@ -45,6 +47,11 @@ class Transfer:
         self.t, self.maneuver = t, record.maneuver
         self.cubic = LocalCubic(t, window_s)
         self.controls = controls_on(flight, aircraft, t)
+        if vibration_filter_hz > 0.0:
+            self.controls = {
+                name: lowpass(t, values, vibration_filter_hz)
+                for name, values in self.controls.items()
+            }
         self.thrust = thrust_on(flight, aircraft, t)
         self.fuel_used = fuel
         self.recorded = recorded_on(flight, t)

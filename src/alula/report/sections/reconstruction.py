@@ -19,8 +19,8 @@ from alula.report.sections.summary import method_words, sentence
 def reconstruction(result: Reconstruction, figures: FigureStore) -> Html:
     """Tables of the whole reconstruction, then the plots of each maneuver."""
     level = "good" if result.converged else "bad"
-    status = sentence(result.status[:1].upper() + result.status[1:])
-    words = f"Method: {method_words(result.method)}. {status}"
+    method = "" if result.method == "none" else f"Method: {method_words(result.method)}. "
+    words = method + sentence(result.status)
     return join(
         [
             tag("p", mark(level, words, long=True)),
@@ -36,6 +36,8 @@ def reconstruction(result: Reconstruction, figures: FigureStore) -> Html:
 def _constants(result: Reconstruction) -> Html:
     if not result.constants:
         return tag("p", "No constants were estimated.")
+    if len({c.name.partition("[")[2] for c in result.constants}) > 1:
+        return _constants_by_group(result)
     rows = []
     for c in result.constants:
         factor, unit = shown(c.unit)
@@ -56,6 +58,31 @@ def _constants(result: Reconstruction) -> Html:
         ["Constant", "Meaning", "Value ± se", "Unit", "Do the data determine it?"],
         rows,
         numeric=(2,),
+    )
+
+
+def _constants_by_group(result: Reconstruction) -> Html:
+    """Constants that each maneuver or log has for itself, 'b_ax[spiral]': a column for each."""
+    cells: dict[str, dict[str, Html]] = {}
+    units: dict[str, str] = {}
+    for c in result.constants:
+        name, _, group = c.name.partition("[")
+        factor, units[name] = shown(c.unit)
+        value = plus_minus(factor * c.value, factor * c.se)
+        unseen = "" if c.observable else mark("caution", "not observable")
+        cells.setdefault(name, {})[group.removesuffix("]")] = join([value, " ", unseen])
+    groups = list(dict.fromkeys(g for row in cells.values() for g in row))
+    return table(
+        "Biases, scale factors and other constants, with one standard error, for each maneuver or "
+        "log by itself. What the data do not determine is marked not observable: it is reported, "
+        "not used. Those of a walking unknown are of its mean.",
+        ["Constant", "Meaning", "Unit", *(tag("code", g) if g else "all" for g in groups)],
+        (
+            [tag("code", n), meaning(n), units[n], *(row.get(g, MISSING) for g in groups)]
+            for n, row in cells.items()
+        ),
+        numeric=range(3, 3 + len(groups)),
+        class_="dense",
     )
 
 

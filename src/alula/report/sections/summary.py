@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from alula.identify.result import Identification
+from alula.reconstruct.result import Reconstruction
 from alula.report.html import Html, escape, file_name, join, tag
 from alula.report.input import ReportInput
 from alula.report.names import WORDS
@@ -72,7 +73,6 @@ _METHODS = {
     "ekf": "extended Kalman filter and smoother",
     "ukf": "unscented Kalman filter and smoother",
     "ml": "maximum likelihood, output error",
-    "none": "none, motion as recorded",
 }
 
 
@@ -83,15 +83,9 @@ def reasons(report: ReportInput) -> list[Html]:
     if identification is not None:
         found += _parameters(identification) + _fits(identification)
         if identification.status:
-            found.append(escape(f"Identification: {sentence(identification.status)}"))
+            found.append(escape(sentence(identification.status)))
     if reconstruction is not None:
-        failed = "" if reconstruction.converged else " did not converge"
-        found.append(
-            escape(
-                f"Reconstruction ({method_words(reconstruction.method)}){failed}: "
-                f"{sentence(reconstruction.status)}"
-            )
-        )
+        found.append(escape(_reconstructed(reconstruction)))
     levels = [m.level for m in report.all_messages()]
     count = {k: levels.count(k) for k in ("error", "warning", "info")}
     found.append(
@@ -145,8 +139,21 @@ def _listed(start: str, items: list[Html]) -> Html:
     return join([start, Html(", ".join(items)), "."])
 
 
+def _reconstructed(result: Reconstruction) -> str:
+    """How the flight path came about, in one sentence."""
+    if result.method == "none":
+        return sentence(result.status)
+    failed = "" if result.converged else " did not converge"
+    status = result.status.strip() or "no more is known"
+    return f"Reconstruction ({method_words(result.method)}){failed}: {_stopped(status)}"
+
+
 def sentence(text: str) -> str:
-    """The text with a full stop, unless it ends a sentence already."""
+    """The text with a capital at its start and a full stop at its end."""
+    return _stopped(text[:1].upper() + text[1:])
+
+
+def _stopped(text: str) -> str:
     return text if text.endswith((".", "!", "?")) or not text else f"{text}."
 
 
