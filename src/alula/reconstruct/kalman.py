@@ -18,6 +18,7 @@ from alula.reconstruct.filter_colour import lift, white
 from alula.reconstruct.problem import Problem
 from alula.reconstruct.solution import RecordSolution, Solution
 from alula.reconstruct.tempering import MOST_PASSES, SETTLED, Start, nearer, restored
+from alula.reconstruct.unknowns import WIND
 
 
 def solve_ekf(problem: Problem) -> Solution:
@@ -43,21 +44,30 @@ def filter_forward(
 
 
 def _settle(problem: Problem, method: Literal["ekf", "ukf"]) -> tuple[Start, Start, bool]:
-    """Stated start of the constants, the start near their estimates, and whether they settled."""
+    """Stated start of the constants, the start near their estimates, and whether they settled.
+
+    Where nothing multiplies, or the passes do not settle, both starts are the stated one.
+    """
+    names = [u.name for u in problem.unknowns]
     stated = Start(
         np.array([u.value for u in problem.unknowns]), np.array([u.prior for u in problem.unknowns])
     )
-    walks = np.array([u.walk > 0.0 for u in problem.unknowns], dtype=bool)
+    multiply = np.array([u.name in WIND or u.name.startswith("k_") for u in problem.unknowns])
+    multiply &= np.array([u.walk == 0.0 for u in problem.unknowns])
+    if not any(name.startswith("k_") for name in names):
+        return stated, stated, True
     used, last = stated, stated.mean
-    for _ in range(MOST_PASSES if len(last) else 0):
+    for _ in range(MOST_PASSES):
         out, _, _ = _run(problem, method, used, smooth=False, keep=False)
         x, P = restored(out["x"][-1:], out["final_covariance"][None], problem.motion, used, stated)
         now = x[0, problem.motion :]
-        se = np.sqrt(np.diagonal(P[0])[problem.motion :])
-        if np.all((np.abs(now - last) < SETTLED * se)[~walks]):
+        se = np.sqrt(np.maximum(np.diagonal(P[0])[problem.motion :], 0.0))
+        if not np.all((se > 0.0) & (se < 1.01 * stated.deviation)):
+            break
+        if np.all((np.abs(now - last) < SETTLED * se)[multiply]):
             return stated, used, True
-        used, last = nearer(stated, now, se, walks), now
-    return stated, used, not len(last)
+        used, last = nearer(stated, now, se, multiply), now
+    return stated, stated, False
 
 
 def _run(

@@ -107,8 +107,11 @@ def solve_ml(problem: Problem, estimate_initial: bool = True) -> Solution:
     scale = np.sqrt(np.maximum(np.diagonal(information), 1e-300))
     dispersion = np.linalg.pinv(information / np.outer(scale, scale)) / np.outer(scale, scale)
     white = np.sqrt(np.maximum(np.diagonal(dispersion)[: layout.unknowns], 0.0))
-    inputs = _by_inputs(problem, layout, fits, sigma)
-    covariance = _coloured(layout, fits, sigma, dispersion, dispersion @ inputs @ dispersion)
+    inputs = dispersion @ _by_inputs(problem, layout, fits, sigma) @ dispersion
+    stated = np.zeros(layout.size)
+    stated[: layout.unknowns] = prior**-2.0
+    believed = (dispersion * stated) @ dispersion
+    covariance = _coloured(layout, fits, sigma, dispersion, inputs, believed)
     status, messages = _verdict(converged, iterations)
     return Solution(
         records=tuple(
@@ -203,9 +206,17 @@ def _by_inputs(problem: Problem, layout: _Layout, fits: list[_Fit], sigma: Array
 
 
 def _coloured(
-    layout: _Layout, fits: list[_Fit], sigma: Array, dispersion: Array, inputs: Array
+    layout: _Layout,
+    fits: list[_Fit],
+    sigma: Array,
+    dispersion: Array,
+    inputs: Array,
+    believed: Array,
 ) -> Array:
-    """Covariance with coloured residuals, sensor by sensor and maneuver by maneuver."""
+    """Covariance with coloured residuals, sensor by sensor and maneuver by maneuver.
+
+    inputs: covariance that the inertial sensors' noise causes; believed: that the prior leaves.
+    """
     blocks = []
     for k, fit in enumerate(fits):
         columns = layout.columns(k)
@@ -214,7 +225,7 @@ def _coloured(
             whole = np.zeros((len(fit.residual), layout.size))
             whole[:, columns[used]] = fit.jacobian[:, i, used] / sigma[i]
             blocks.append((whole, fit.residual[:, i] / sigma[i]))
-    coloured = coloured_covariance(blocks, dispersion).covariance
+    coloured = coloured_covariance(blocks, dispersion).covariance + believed
     # Never more certain than white noise of that size and the inertial sensors' noise allow.
     least = np.diagonal(dispersion) + np.diagonal(inputs)
     lift = np.sqrt(np.maximum(least / np.diagonal(coloured), 1.0))

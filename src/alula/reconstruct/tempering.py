@@ -28,12 +28,14 @@ class Start:
     deviation: Array
 
 
-def nearer(stated: Start, found: Array, se: Array, walks: np.ndarray) -> Start:
-    """The next pass's start: around what was found, never wider than stated. One that walks keeps
-    the stated start, since its information decays.
+def nearer(stated: Start, found: Array, se: Array, multiply: np.ndarray) -> Start:
+    """The next pass's start: around what was found, never wider than stated. Constants that do not
+    multiply with others keep the stated start, and so do those that walk, whose information decays.
     """
     deviation = np.minimum(NARROW * se, stated.deviation)
-    return Start(np.where(walks, stated.mean, found), np.where(walks, stated.deviation, deviation))
+    return Start(
+        np.where(multiply, found, stated.mean), np.where(multiply, deviation, stated.deviation)
+    )
 
 
 def restored(
