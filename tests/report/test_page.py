@@ -248,6 +248,25 @@ def test_innovations_are_scaled_to_their_usual_band() -> None:
     assert "−30.0\u00a0m/s at 0\u00a0s" in text
 
 
+def test_motion_as_recorded_is_not_called_a_reconstruction() -> None:
+    report = example()
+    assert report.reconstruction is not None
+    nothing = np.empty((626, 0))
+    segment = replace(
+        report.reconstruction.segments[0],
+        state_names=(), states=nothing, states_se=nothing, sensors=(), mismatch={},
+    )  # fmt: skip
+    changed = replace(
+        report.reconstruction, method="none", segments=(segment,), constants=(),
+        nis_mean=np.nan, nis_interval=(np.nan, np.nan), status="motion as recorded",
+    )  # fmt: skip
+    text = render(replace(report, reconstruction=changed))
+    assert "<h2>Motion as recorded</h2>" in text
+    assert "Motion at the center of gravity" in text
+    for empty in ("States with their", "Sensors: measured", "no innovations", "No constants"):
+        assert empty not in text
+
+
 def test_constants_of_each_maneuver_share_a_row() -> None:
     report = example()
     assert report.reconstruction is not None

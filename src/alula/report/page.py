@@ -85,7 +85,9 @@ def _sections(report: ReportInput, figures: FigureStore) -> list[tuple[str, str,
         found.append(("maneuvers", "Maneuvers", maneuvers(report)))
     if report.reconstruction is not None:
         content = reconstruction(report.reconstruction, figures)
-        found.append(("reconstruction", "Flight path reconstruction", content))
+        recorded = report.reconstruction.method == "none"
+        title = "Motion as recorded" if recorded else "Flight path reconstruction"
+        found.append(("reconstruction", title, content))
     if report.identification is not None and report.identification.parameters:
         fits = coefficients(report.identification, figures)
         found.append(("coefficients", "Coefficients: measured and model", fits))

@@ -24,13 +24,15 @@ def reconstruction(result: Reconstruction, figures: FigureStore) -> Html:
     return join(
         [
             tag("p", mark(level, words, long=True)),
-            _constants(result),
-            _nis(result),
-            _mismatch(result),
-            _whiteness(result),
+            *([] if result.method == "none" else _findings(result)),
             *(_segment(s, figures) for s in result.segments),
         ]
     )
+
+
+def _findings(result: Reconstruction) -> list[Html]:
+    """What was estimated, and whether it agrees with the data."""
+    return [_constants(result), _nis(result), _mismatch(result), _whiteness(result)]
 
 
 def _constants(result: Reconstruction) -> Html:
@@ -185,6 +187,13 @@ def _inside(s: SensorFit) -> str:
     return f"{100.0 * share:.0f} %"
 
 
+def _plots(title: str, members: list[Html]) -> Html:
+    """A heading and its figures; nothing where there are none."""
+    if not members:
+        return Html("")
+    return join([tag("h4", title), tag("div", *members, class_="grid")])
+
+
 def _steady(segment: Segment) -> Html:
     """Says which states are not drawn and where they are told."""
     names = steady_states(segment)
@@ -198,16 +207,18 @@ def _steady(segment: Segment) -> Html:
 def _segment(segment: Segment, figures: FigureStore) -> Html:
     maneuver = segment.maneuver
     grid = [
-        tag("h4", "States with their ±2 standard error bands, at the inertial sensor"),
-        tag("div", *(figures.add(f) for f in state_figures(segment)), class_="grid"),
+        _plots(
+            "States with their ±2 standard error bands, at the inertial sensor",
+            [figures.add(f) for f in state_figures(segment)],
+        ),
         _steady(segment),
-        tag("h4", "Motion at the center of gravity, as identification takes it"),
-        tag("div", *(figures.add(f) for f in motion_figures(segment.motion)), class_="grid"),
-        tag("h4", "Sensors: measured and fitted, innovations with their 2 σ bands"),
-        tag(
-            "div",
-            *(figures.add(sensor_figure(s, maneuver, titled(s.name))) for s in segment.sensors),
-            class_="grid",
+        _plots(
+            "Motion at the center of gravity, as identification takes it",
+            [figures.add(f) for f in motion_figures(segment.motion)],
+        ),
+        _plots(
+            "Sensors: measured and fitted, innovations with their 2 σ bands",
+            [figures.add(sensor_figure(s, maneuver, titled(s.name))) for s in segment.sensors],
         ),
     ]
     held = tag("span", "held out", class_="tag") if maneuver.held_out else ""
