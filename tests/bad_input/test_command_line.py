@@ -239,7 +239,7 @@ def test_impossible_inertia(small: SmallProject) -> None:
 
 def test_missing_aircraft_file(small: SmallProject) -> None:
     (small.folder / "sportstar.toml").unlink()
-    small.refused("file_not_readable", "sportstar.toml")
+    small.refused("missing_aircraft", "sportstar.toml")
 
 
 def test_project_without_an_aircraft(small: SmallProject) -> None:

@@ -266,9 +266,10 @@ def _agree(log: LogSpec, angle: Channel, rate: Channel) -> Message | None:
         return None
     t, x = rate.t[r], rate.values[r]
     integral = np.concatenate(([0.0], np.cumsum(0.5 * (x[1:] + x[:-1]) * np.diff(t))))
-    grid = np.arange(max(t[0], angle.t[a][0]), min(t[-1], angle.t[a][-1]), 0.5)
-    if not 8 <= len(grid) <= 1_000_000:
+    start, end = max(t[0], angle.t[a][0]), min(t[-1], angle.t[a][-1])
+    if not 4.0 <= end - start <= 500_000.0:  # s; stamps in another unit may span ages
         return None
+    grid = np.arange(start, end, 0.5)
     turned = np.diff(np.interp(grid, t, integral))
     changed = np.diff(np.interp(grid, angle.t[a], angle.values[a]))
     level = np.abs(changed) < 3.0  # a heading or bank that wraps around is no change
