@@ -113,8 +113,9 @@ const AlulaPlot = (() => {
       panel.clipped = panel.limit && this.link.high - this.link.low > 0.1 * (this.link.end - this.link.start);
       if (panel.clipped) return [-panel.limit, panel.limit];
       // A band may widen the axis to three times the curves' range, not flatten them; beside a
-      // curve that hardly changes it is shown whole, and the axis keeps numbers that can be read.
-      const least = 1e-5 * Math.max(Math.abs(low), Math.abs(high)) || 1e-12;
+      // curve that hardly changes it is shown whole, and the axis keeps numbers that can be read;
+      // what differs by less than 1e-9 is rounding, drawn as a level line.
+      const least = Math.max(1e-5 * Math.max(Math.abs(low), Math.abs(high)), 1e-9);
       const usual = Math.max(0, ...panel.bands.map((b) => b.usual));
       const room = high - low > 1e-3 * usual ? Math.max(high - low, least) : 2 * usual;
       const short = Math.max(0, least - (high - low)) / 2;

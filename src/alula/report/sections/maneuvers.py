@@ -54,6 +54,7 @@ def _entry(entry: Mapping[str, float]) -> str:
     parts = []
     for name, value in entry.items():
         factor, unit = shown(unit_of(name))
+        value = 0.0 if abs(value) < 1e-9 else value  # rounding of a simulated log
         # the unit stays on the line of its number
         parts.append(f"{name} {number(factor * value)}" + (f"\u00a0{unit}" if unit != "–" else ""))
     return ", ".join(parts) or MISSING
