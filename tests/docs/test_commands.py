@@ -16,7 +16,8 @@ ROOT = Path(__file__).resolve().parents[2]
 
 def blocks(page: str, language: str) -> list[str]:
     """The fenced blocks of one language, in order."""
-    return re.findall(rf"^```{language}\n(.*?)^```", (ROOT / page).read_text(), re.S | re.M)
+    found = re.findall(r"^```(\w*)\n(.*?)^```$", (ROOT / page).read_text(), re.S | re.M)
+    return [block for name, block in found if name == language]
 
 
 def test_readme_commands_exist() -> None:
@@ -33,6 +34,23 @@ def test_readme_commands_exist() -> None:
         said = run(["alula", words[1], "--help"], ROOT)
         for option in (word for word in words if word.startswith("--")):
             assert option in said.stdout
+
+
+def test_readme_excerpt_is_what_the_demo_prints(tmp_path: Path) -> None:
+    """Name, truth and verdict by the letter; value and error as another processor may round."""
+    (shown,) = [b.splitlines() for b in blocks("README.md", "") if b.startswith("parameter")]
+    done = run(["python", str(ROOT / "examples/demo/demo.py"), "--folder", str(tmp_path)], ROOT)
+    assert done.returncode == 0, done.stderr
+    printed = {line.split()[0]: line.split() for line in done.stdout.splitlines() if line.strip()}
+    assert shown[0].split() == printed["parameter"]
+    for line in shown[1:]:
+        words = line.split()
+        now = printed[words[0]]
+        assert words[-2:] == now[-2:]
+        error = float(words[2])
+        # Half a standard error: the page stays true as long as it tells the same story.
+        assert abs(float(words[1]) - float(now[1])) < 0.5 * error
+        assert 0.5 < float(now[2]) / error < 2.0
 
 
 def test_real_projects_named_in_the_readme_load(monkeypatch) -> None:

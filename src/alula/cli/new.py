@@ -38,6 +38,14 @@ def new(
         from alula.base.messages import refuse
         from alula.logs.guess import new_project
 
+        if log.is_dir():  # before its name makes the project's
+            raise refuse(
+                "file_not_readable",
+                where=str(log),
+                expected="a log file",
+                found="a folder",
+                do="Name one file in it.",
+            )
         path = output or Path(log.name).with_suffix(".toml")
         if path.exists():
             raise refuse(
