@@ -43,7 +43,7 @@ IMU_SIGMA = np.array([0.01, 0.01, 0.01, 0.001 * DEG, 0.001 * DEG, 0.001 * DEG])
 IMU_BIAS = IMU_SIGMA * np.array([1.0, -1.0, 1.0, 1.0, -1.0, 1.0])
 # Standard deviation of upwash and sidewash; each seed draws its own. Where the angle of attack
 # hardly changes, upwash and vertical wind are told apart only along a curve, not an ellipsoid;
-# there the vane counts as calibrated. In de3211, without sideslip, k_beta must be found unobservable.
+# there the vane counts as calibrated. In de3211, without sideslip, k_beta must read unobservable.
 BOTH, SIDEWASH = {"k_alpha": 0.05, "k_beta": 0.05}, {"k_beta": 0.05}
 UPWASH: Mapping[str, Mapping[str, float]] = {
     "de3211": BOTH,
