@@ -10,13 +10,19 @@ CORE := $(shell find core/include bindings -name '*.hpp' -o -name '*.cpp') CMake
 .PHONY: build demo test bench verify lint core-test stubs format clean
 build: $(STAMP)
 
+# A set-up that was interrupted starts over.
+.DELETE_ON_ERROR:
+
 $(BIN)/python:
+	@$(PYTHON) -c 'import sys; sys.exit("Alula needs Python 3.11 or newer; name it: make demo PYTHON=python3.12" if sys.version_info < (3, 11) else 0)'
+	@echo "Setting up $(VENV), once; all of it takes a few minutes."
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --upgrade pip
 	$(BIN)/python -m pip install --quiet "scikit-build-core>=0.11" "nanobind>=2.4" "cmeel-eigen>=3.4" "cmake>=3.25" ninja
 
 # Editable, without isolation: the build tools stay in the environment, so a rebuild finds them.
 $(STAMP): $(BIN)/python $(CORE)
+	@echo "Building the core and installing what it needs."
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pip install --quiet --no-build-isolation --editable ".[test]"
 	@touch $(STAMP)
 
