@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 import scipy.io
 
+from alula.model import load_model
 from cli.command import SmallProject, alula, assert_refused, contents, process
 
 # --- the log -------------------------------------------------------------------------------------
@@ -209,8 +210,9 @@ def test_corrupt_matlab_file(small: SmallProject) -> None:
 
 
 def test_log_of_names_that_terminals_and_json_must_survive(small: SmallProject) -> None:
-    small.log.write_text("[red]\x1b[31m,é\u202e\n1,2\n")
-    assert "\x1b" not in small.refused("missing_channel")
+    small.log.write_text("[red]\x1b[2J\x1b]0;title\x07,é\u202e\n" + "1,2\n" * 100)
+    said = small.refused("missing_channel", "[red]?[2J?]0;title?, é?")
+    assert not set("\x1b\x07\u202e") & set(said)
 
 
 # --- the aircraft against the log ----------------------------------------------------------------
@@ -479,25 +481,42 @@ def test_interrupted(small: SmallProject) -> None:
     assert contents(small.folder) == before
 
 
-@pytest.mark.parametrize(
-    "words", [("check",), ("identify",), ("check", "--json", "-"), ("identify", "--json", "-")]
-)
-def test_reader_that_goes_away(small: SmallProject, words: tuple[str, ...]) -> None:
+@pytest.mark.parametrize("streams", ["stdout", "both"])
+@pytest.mark.parametrize("words", [("check",), ("identify",), ("identify", "--json", "-")])
+def test_reader_that_goes_away(small: SmallProject, words: tuple[str, ...], streams: str) -> None:
     """`alula ... | head`: no complaint, the command's own exit code, and its files all the same."""
     command, *more = words
     report = ["--report", str(small.folder / "r.html")] if command == "identify" else []
-    running = subprocess.Popen(
-        [sys.executable, "-m", "alula", command, str(small.path), *more, *report],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-    assert running.stdout is not None
-    assert running.stderr is not None
-    running.stdout.close()
-    err = running.stderr.read()
-    running.stderr.close()
-    assert running.wait(timeout=120) == 0, err
-    assert "Traceback" not in err
-    assert "Broken pipe" not in err
+    with (small.folder / "stderr").open("w+") as err:
+        running = subprocess.Popen(
+            [sys.executable, "-m", "alula", command, str(small.path), *more, *report],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT if streams == "both" else err,
+        )
+        assert running.stdout is not None
+        running.stdout.close()
+        assert running.wait(timeout=120) == 0
+        err.seek(0)
+        said = err.read()
+    assert "Traceback" not in said
+    assert "Broken pipe" not in said
     assert (small.folder / "r.html").exists() == (command == "identify")
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "utf-8"])
+def test_file_names_of_any_bytes(small: SmallProject, encoding: str) -> None:
+    """A folder named in Latin-1 on a system of UTF-8, and a terminal that knows ASCII only."""
+    folder = small.folder.with_name(os.fsdecode(b"caf\xe9"))
+    small.folder.rename(folder)
+    words = {"--report": "r.html", "--model": "m.toml", "--truth": "truth.json"}
+    ran = process(
+        "identify",
+        folder / "demo.toml",
+        *(word for key, name in words.items() for word in (key, folder / name)),
+        env={**os.environ, "PYTHONIOENCODING": encoding},
+        errors="surrogateescape",
+    )
+    assert ran.code == 0, ran.err
+    assert "Cm_alpha" in ran.out
+    assert "caf\ufffd" in (folder / "r.html").read_text()
+    assert load_model(folder / "m.toml").params

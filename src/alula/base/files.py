@@ -17,7 +17,8 @@ def write_whole(path: Path, content: str | bytes) -> None:
     Raises BadInput if the folder does not exist or cannot be written to, or if the name is that of
     a device or pipe, which a rename would replace; what was there is then untouched.
     """
-    data = content.encode() if isinstance(content, str) else content
+    # A path in the text may hold bytes that are no UTF-8; they become '?'.
+    data = content.encode("utf-8", "replace") if isinstance(content, str) else content
     temporary = ""
     try:
         if path.exists() and not path.is_file():

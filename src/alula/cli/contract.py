@@ -5,13 +5,14 @@ from __future__ import annotations
 import json
 import math
 import os
+import re
 import sys
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TextIO
 
 import typer
 
@@ -19,6 +20,11 @@ from alula.base.messages import BadInput, Message, refuse
 
 if TYPE_CHECKING:
     from alula.flight import SourceFile
+
+# Control characters, escapes that are no color, and marks that turn the direction of writing.
+_STEERING = re.compile(
+    r"\x1b(?!\[[\d;]*m)|[\x00-\x08\x0b-\x1a\x1c-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]"
+)
 
 Kind = Literal["", "report", "model", "json"]
 Status = Literal["ok", "not_identifiable", "check_failed", "bad_input"]
@@ -65,12 +71,12 @@ class Command:
     def progress(self, text: str) -> None:
         """One line on stderr about what is being done."""
         if not self.quiet:
-            typer.echo(f"… {text}", err=True)
+            _out(f"… {text}\n", sys.stderr)
 
     def say(self, text: str) -> None:
         """Text for people, on stdout; nothing where stdout is JSON."""
         if self.talks:
-            _out(text + "\n")
+            _out(text + "\n", sys.stdout)
 
     @contextmanager
     def run(self) -> Iterator[None]:
@@ -96,12 +102,12 @@ class Command:
     def _finish(self) -> None:
         for message in self.messages:
             if message.level != "info" or self.status == "bad_input":
-                typer.echo(f"{message.level}: {message}", err=True)
+                _out(f"{message.level}: {message}\n", sys.stderr)
         if self.json:
             try:
                 self._write(json.dumps(self._envelope(), indent=1, allow_nan=False) + "\n")
             except BadInput as error:
-                typer.echo(f"error: {error}", err=True)
+                _out(f"error: {error}\n", sys.stderr)
                 raise typer.Exit(2) from None
         raise typer.Exit(EXIT[self.status])
 
@@ -111,7 +117,7 @@ class Command:
 
             write_whole(Path(self.json), text)
         else:
-            _out(text)
+            _out(text, sys.stdout)
 
     def _envelope(self) -> dict[str, Any]:
         from alula.base.provenance import provenance
@@ -154,14 +160,20 @@ class Command:
         }
 
 
-def _out(text: str) -> None:
-    """Text to stdout. A reader who has seen enough (`| head`) ends the text, not the command."""
+def _out(text: str, stream: TextIO) -> None:
+    """Text to stdout or stderr, with '?' for what its encoding lacks (a file's name may be any)
+    and for what would steer the terminal, colors aside (a log's names may be any too).
+
+    A reader who has seen enough (`| head`) ends the text, not the command.
+    """
+    text = _STEERING.sub("?", text)
+    encoding = stream.encoding or "utf-8"
     try:
-        sys.stdout.write(text)
-        sys.stdout.flush()
+        stream.write(text.encode(encoding, "replace").decode(encoding))
+        stream.flush()
     except BrokenPipeError:
         # What is still in the buffer would complain once more when Python closes it.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
 def finite(value: Any, where: str, lost: list[str]) -> Any:
