@@ -506,6 +506,7 @@ def test_reader_that_goes_away(small: SmallProject, words: tuple[str, ...], stre
 @pytest.mark.parametrize("encoding", ["ascii", "utf-8"])
 def test_file_names_of_any_bytes(small: SmallProject, encoding: str) -> None:
     """A folder named in Latin-1 on a system of UTF-8, and a terminal that knows ASCII only."""
+    small.edit('name = "Demo: light', 'name = "😀 Demo: light')
     folder = small.folder.with_name(os.fsdecode(b"caf\xe9"))
     small.folder.rename(folder)
     words = {"--report": "r.html", "--model": "m.toml", "--truth": "truth.json"}

@@ -99,8 +99,9 @@ def model_text(model: AeroModel) -> str:
 
 
 def _text(text: str) -> str:
-    # A JSON string is a TOML basic string, but for DEL, which TOML wants escaped.
-    return json.dumps(text).replace("\x7f", "\\u007f")
+    # A JSON string is a TOML basic string, but for DEL, which TOML wants escaped, and for escaped
+    # surrogates, which it does not know.
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
 def _row(values: Any) -> str:
