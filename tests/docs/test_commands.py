@@ -89,6 +89,9 @@ def test_tutorial(tmp_path: Path) -> None:
         assert low < found[name]["truth"] < high
         assert f"{found[name]['truth']:g}" in text
     assert result["result"]["fit"]["Cm"]["n_held_out"] > 0
+    page = (ROOT / "docs/command_line.md").read_text()
+    for key in keys(result):
+        assert re.search(rf"\b{key}\b", page), f"the page does not explain '{key}'"
     for name in ("report.html", "model.toml"):
         assert (tmp_path / "tutorial" / name).stat().st_size > 0
 
@@ -115,6 +118,25 @@ def test_every_option_is_on_the_page(command: str) -> None:
     assert options
     for option in options:
         assert f"`{option}" in page
+
+
+BY_NAME = ("mismatch", "maneuvers", "versions", "timing_s")  # whose keys name sensors and the like
+
+
+def keys(value: object) -> set[str]:
+    """The names of all fields of an envelope."""
+    if isinstance(value, list):
+        return {key for item in value for key in keys(item)}
+    if not isinstance(value, dict):
+        return set()
+    out = set()
+    for name, inner in value.items():
+        out.add(name)
+        if name == "fit":  # by coefficient
+            out |= keys(list(inner.values()))
+        elif name not in BY_NAME:
+            out |= keys(inner)
+    return out
 
 
 def apply(block: str, file: Path) -> None:
