@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from verification.harv import harv_reconstruction
 from verification.registry import row
 from verification.run import (
     DATA,
@@ -143,27 +144,12 @@ def harv(quick: bool) -> tuple[str, bool]:
     value = published["pc"].ravel()[:5] * units
     se = np.sqrt(np.diag(published["crbc"]))[:5] * abs(units)
     margin = dict(zip(names, 3 * se, strict=True)) | {"b_q": 5e-5}
-    found = constants(_reconstruction_only("harv.toml"))
+    done = harv_reconstruction(DATA / "harv" / "compat_lon_example.mat")
+    found = {c.name: (c.value, c.se) for c in done.constants}
     return within(
         {n: found[n][0] for n in names},
         {n: (float(v), float(margin[n])) for n, v in zip(names, value, strict=True)},
     )
-
-
-def _reconstruction_only(project: str) -> dict:
-    """Constants of a project whose aim is the reconstruction alone."""
-    from alula.aircraft import load_aircraft
-    from alula.base.project import load_project
-    from alula.logs.maneuvers import maneuvers
-    from alula.logs.reader import read_all
-    from alula.reconstruct import reconstruct
-
-    p = load_project(ROOT / "examples" / "real" / project)
-    flights = read_all(p)
-    chosen, _ = maneuvers(p, flights)
-    done = reconstruct(flights, chosen, load_aircraft(p.aircraft), p.reconstruct)
-    biases = [{"name": c.name, "value": c.value, "se": c.se} for c in done.constants]
-    return {"reconstruction": {"biases": biases}}
 
 
 @row(

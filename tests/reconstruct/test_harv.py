@@ -4,15 +4,18 @@ import numpy as np
 import pytest
 from scipy.io import loadmat
 
-from data import data
-from real import reconstructed
+from data import ROOT, data
+from verification.harv import harv_reconstruction
 
 FT = 0.3048
 
 
 @pytest.fixture(scope="module")
 def solved():
-    return reconstructed("harv", "ml")["ml"]
+    recording = data("harv", "compat_lon_example.mat")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("ALULA_DATA", str(ROOT))
+        return harv_reconstruction(recording)
 
 
 @pytest.fixture(scope="module")
