@@ -27,7 +27,7 @@ def check(
     project: Annotated[Path, typer.Argument(metavar="PROJECT", help="The project file.")],
     json: JsonOption = "",
     seed: SeedOption = None,
-    threads: ThreadsOption = 0,
+    threads: ThreadsOption = 1,
     quiet: QuietOption = False,
 ) -> None:
     """Say what is in a project's logs, and what looks wrong.

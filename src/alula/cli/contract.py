@@ -39,7 +39,7 @@ SeedOption = Annotated[
 ThreadsOption = Annotated[
     int,
     typer.Option(
-        "--threads", metavar="N", min=0, help="Threads to use; 0 leaves it to the libraries."
+        "--threads", metavar="N", min=0, help="Threads of linear algebra; 0: the library chooses."
     ),
 ]
 QuietOption = Annotated[
@@ -54,7 +54,7 @@ class Command:
     name: str  # of the schema: 'identification'
     json: str = ""
     seed: int | None = None
-    threads: int = 0
+    threads: int = 1  # the matrices are small: more threads cost time
     quiet: bool = False
     status: Status = "ok"
     messages: Sequence[Message] = ()

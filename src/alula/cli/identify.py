@@ -57,7 +57,7 @@ def identify(
     ] = None,
     json: JsonOption = "",
     seed: SeedOption = None,
-    threads: ThreadsOption = 0,
+    threads: ThreadsOption = 1,
     quiet: QuietOption = False,
 ) -> None:
     """Identify derivatives, with error bars and verdicts.

@@ -25,7 +25,7 @@ def new(
     ] = None,
     json: JsonOption = "",
     seed: SeedOption = None,
-    threads: ThreadsOption = 0,
+    threads: ThreadsOption = 1,
     quiet: QuietOption = False,
 ) -> None:
     """Write a project file for a log, channels guessed.

@@ -29,7 +29,7 @@ def schema(
     ] = Kind.project,
     json: JsonOption = "",
     seed: SeedOption = None,
-    threads: ThreadsOption = 0,
+    threads: ThreadsOption = 1,
     quiet: QuietOption = False,
 ) -> None:
     """Print the JSON schema of a project or aircraft file.
