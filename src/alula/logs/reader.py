@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
+from importlib import import_module
 
 import numpy as np
 
@@ -12,21 +13,20 @@ from alula.base.files import sha256
 from alula.base.messages import Message, refuse
 from alula.base.project import ChannelSpec, LogSpec, Project
 from alula.flight import Flight, SourceFile
-from alula.logs import ascii, csv, mat, npz, parquet
 from alula.logs.mapping import LogMapping
 from alula.logs.plausibility import check
 from alula.logs.sniff import choose
 from alula.logs.table import Tables
 
-Reader = Callable[[LogSpec], Tables]
-
-READERS: dict[str, Reader] = {
-    "csv": csv.read,
-    "ascii": ascii.read,
-    "text": ascii.read_text,
-    "npz": npz.read,
-    "mat": mat.read,
-    "parquet": parquet.read,
+# 'module:function' of alula.logs by format; loaded when a file asks for it, because the parsers'
+# libraries take longer to import than a log to read.
+READERS: dict[str, str] = {
+    "csv": "csv:read",
+    "ascii": "ascii:read",
+    "text": "ascii:read_text",
+    "npz": "npz:read",
+    "mat": "mat:read",
+    "parquet": "parquet:read",
 }
 
 
@@ -66,7 +66,9 @@ def read(log: LogSpec, channels: Mapping[str, ChannelSpec] | None = None) -> Fli
 def read_tables(log: LogSpec) -> tuple[Tables, list[Message]]:
     """The arrays of a log's file, by the reader that its content asks for."""
     name, messages = choose(log)
-    return READERS[name](log), messages
+    module, function = READERS[name].split(":")
+    reader: Callable[[LogSpec], Tables] = getattr(import_module(f"alula.logs.{module}"), function)
+    return reader(log), messages
 
 
 def read_all(project: Project) -> dict[str, Flight]:
