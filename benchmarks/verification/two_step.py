@@ -16,6 +16,7 @@ the kinematics reproduce the recorded states to 1e-3 m/s (`kinematic_defect` sho
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -315,12 +316,16 @@ def monte_carlo(
     filter_: str = "ekf",
     every: int = 1,
     end: float = 120.0,
+    workers: int = 2,
 ) -> Verdict:
-    """All recordings in `folder`, all seeds; the full table takes minutes."""
+    """All recordings in `folder`, all seeds, side by side; the full table takes minutes."""
     seeds = tuple(seeds)
-    return judge(
-        {
-            name: [run(folder / f"{name}.mat", seed, filter_, every, end) for seed in seeds]
+    with ProcessPoolExecutor(workers) as pool:
+        jobs = {
+            name: [
+                pool.submit(run, folder / f"{name}.mat", seed, filter_, every, end)
+                for seed in seeds
+            ]
             for name in recordings
         }
-    )
+        return judge({name: [job.result() for job in each] for name, each in jobs.items()})
