@@ -159,7 +159,8 @@ def _solve(problem: Problem, method: Literal["ekf", "ukf"]) -> Solution:
                 "covariance_repaired",
                 where=f"filter {method}",
                 expected="a covariance well inside the range of double precision",
-                found=f"{out['repairs']} directions held up against rounding",
+                found=f"{out['repairs']} directions held up against rounding, or spreads beyond "
+                "what the equations of motion can take",
                 do="Some noise levels are many orders apart; check [reconstruct.sensors] and imu.",
             )
         )

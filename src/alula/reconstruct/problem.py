@@ -207,7 +207,7 @@ def _initial(
         x[i], sigma = first.get(name, (0.0, 100.0 if name == "h" else 0.1))
         sd[i] = 5.0 * sigma
     if "psi" not in first:
-        sd[6] = 2.0
+        sd[6] = 1.0  # a radian is "unknown" to the filters
     ground = all(n in first for n in ("v_north", "v_east", "v_down"))
     windy = any(u.name == "wind_n" for u in free)
     if ground and (windy or "V" not in first):
