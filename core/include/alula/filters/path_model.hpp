@@ -84,26 +84,29 @@ inline S unknown(const PathModel<T>& model, const S* x, int k) {
   return model.slot[k] >= 0 ? x[model.slot[k]] : S(model.fixed[k]);
 }
 
-// Inputs m (6) freed from bias and scale error. Dittrich 2016, Eq. (3.1), (3.2).
+// Inputs m (6) freed from bias and scale error, those from `first` on: 0 is all, 3 the rates.
+// Dittrich 2016, Eq. (3.1), (3.2).
 template <class S, class T>
-inline void true_inputs(const PathModel<T>& model, const S* x, const T* measured, S* m) {
-  for (int i = 0; i < kInertialInputs; ++i) {
+inline void true_inputs(const PathModel<T>& model, const S* x, const T* measured, S* m,
+                        int first = 0) {
+  for (int i = first; i < kInertialInputs; ++i) {
     m[i] = S(measured[i]) - unknown(model, x, kBiasAx + i);
     if (model.slot[kScaleAx + i] >= 0 || model.fixed[kScaleAx + i] != T(0))
       m[i] = m[i] / (S(T(1)) + unknown(model, x, kScaleAx + i));
   }
 }
 
-// What all sensors share at one instant: air velocity of the inertial sensor in body axes, rates.
+// What all sensors share at one instant: air velocity of the inertial sensor in body axes with its
+// magnitude, and the rates.
 template <class S>
 struct PathAir {
-  S u, v, w, p, q, r;
+  S u, v, w, p, q, r, speed;
 };
 
 // Air-relative velocity at the inertial sensor: v_B - R_BE wind.
 template <class S, class T>
 inline PathAir<S> path_air(const PathModel<T>& model, const S* y, const S* wind, const S* m) {
-  PathAir<S> a{y[kU], y[kV], y[kW], m[3], m[4], m[5]};
+  PathAir<S> a{y[kU], y[kV], y[kW], m[3], m[4], m[5], S(T(0))};
   if (model.wind) {
     S sp, cp, st, ct, sy, cy;
     sincos(y[kPhi], sp, cp);
@@ -115,6 +118,7 @@ inline PathAir<S> path_air(const PathModel<T>& model, const S* y, const S* wind,
     a.v -= across * cp + tilted * sp;
     a.w -= tilted * cp - across * sp;
   }
+  a.speed = sqrt(a.u * a.u + a.v * a.v + a.w * a.w);
   return a;
 }
 
@@ -122,9 +126,23 @@ inline PathAir<S> path_air(const PathModel<T>& model, const S* y, const S* wind,
 // velocity v + w x r. For `_linear` angles also `induced`, the part that upwash leaves alone.
 template <class S, class T>
 inline S path_quantity(const PathSensor<T>& sensor, const S* y, const PathAir<S>& air, S& induced) {
+  induced = S(T(0));
+  const bool central =
+      sensor.position[0] == T(0) && sensor.position[1] == T(0) && sensor.position[2] == T(0);
+  switch (sensor.quantity) {  // what takes no arithmetic
+    case Quantity::phi: return y[kPhi];
+    case Quantity::theta: return y[kTheta];
+    case Quantity::psi: return y[kPsi];
+    case Quantity::height:
+      if (central) return y[kHeight];
+      break;
+    case Quantity::airspeed:
+      if (central) return air.speed;
+      break;
+    default: break;
+  }
   const S x(sensor.position[0]), ry(sensor.position[1]), z(sensor.position[2]);
   const S du = air.q * z - air.r * ry, dv = air.r * x - air.p * z, dw = air.p * ry - air.q * x;
-  induced = S(T(0));
   switch (sensor.quantity) {
     case Quantity::airspeed: {
       const S u = air.u + du, v = air.v + dv, w = air.w + dw;
@@ -137,18 +155,15 @@ inline S path_quantity(const PathSensor<T>& sensor, const S* y, const PathAir<S>
     }
     case Quantity::beta_flank: return atan2(air.v + dv, air.u + du);
     case Quantity::alpha_linear: {
-      induced = dw / sqrt(air.u * air.u + air.v * air.v + air.w * air.w);
+      induced = dw / air.speed;
       return atan2(air.w, air.u);
     }
     case Quantity::beta_linear: {
-      induced = dv / sqrt(air.u * air.u + air.v * air.v + air.w * air.w);
+      induced = dv / air.speed;
       return atan2(air.v, sqrt(air.u * air.u + air.w * air.w));
     }
     default: break;
   }
-  if (sensor.quantity == Quantity::phi) return y[kPhi];
-  if (sensor.quantity == Quantity::theta) return y[kTheta];
-  if (sensor.quantity == Quantity::psi) return y[kPsi];
 
   // Velocity or position in Earth axes of a point that is not the inertial sensor.
   S sp, cp, st, ct, sy, cy;
@@ -179,6 +194,8 @@ template <class S, class T>
 inline S path_output(const PathSensor<T>& sensor, const S* x, const PathAir<S>& air) {
   S induced;
   const S true_value = path_quantity(sensor, x, air, induced);
+  if (sensor.scale_slot < 0 && sensor.bias_slot < 0 && sensor.scale == T(0) && sensor.bias == T(0))
+    return true_value + induced;
   const S scale = sensor.scale_slot >= 0 ? x[sensor.scale_slot] : S(sensor.scale);
   const S bias = sensor.bias_slot >= 0 ? x[sensor.bias_slot] : S(sensor.bias);
   const S reference(sensor.reference);

@@ -145,7 +145,7 @@ bool Unscented<T, R>::predict(const PathModel<T>& model, const T* u0, const T* u
                               const T (*Q)[kMotionStates]) {
   const int n = model.states;
   for (int side = 0; side < 2; ++side)
-    for (int b = 0; b <= n; b += W) {
+    for (int b = 0; b < n + 1 - side; b += W) {  // the mean point once, on the plus side
       L state[kMaxStates], m0[kInertialInputs], m1[kInertialInputs];
       points(b, side == 0 ? T(1) : T(-1), model.dynamic, state);
       true_inputs(model, state, u0, m0);
@@ -156,7 +156,7 @@ bool Unscented<T, R>::predict(const PathModel<T>& model, const T* u0, const T* u
   T middle[N];
   for (int i = 0; i < N; ++i) {
     const T value = X_[i][n];
-    for (int b = n + 1; b < R; ++b) X_[i][b] = X_[i][R + b] = value;
+    for (int b = n; b < R; ++b) X_[i][b] = X_[i][R + b] = value;
     x[i] = center(X_[i], value, n, D_[i]);
     middle[i] = value - x[i];
     if (!(std::abs(x[i]) < T(1e30))) return false;
@@ -164,7 +164,7 @@ bool Unscented<T, R>::predict(const PathModel<T>& model, const T* u0, const T* u
   for (int i = 0; i < N; ++i) {
     T* row = P[i];
     clear<R>(row);
-    for (int j = 0; j < model.dynamic; ++j) add_scaled<R>(row, D_[i][j], U_[j]);
+    for (int j = 0; j < model.dynamic; ++j) add_scaled_from<R>(j > N ? j : N, row, D_[i][j], U_[j]);
     products(X_, i, N, n, middle, row);
     if (i < kMotionStates)
       for (int j = i; j < kMotionStates; ++j) row[j] += Q[i][j];
@@ -189,11 +189,11 @@ int Unscented<T, R>::update(const PathModel<T>& model, const T* u, const T* z, T
 
   const int n = model.states;
   for (int side = 0; side < 2; ++side)
-    for (int b = 0; b <= n; b += W) {
+    for (int b = 0; b < n + 1 - side; b += W) {  // the mean point once, on the plus side
       L state[kMaxStates], m[kInertialInputs], wind[3];
       points(b, side == 0 ? T(1) : T(-1), n, state);
-      true_inputs(model, state, u, m);
-      for (int i = 0; i < 3; ++i) wind[i] = unknown(model, state, kWindNorth + i);
+      true_inputs(model, state, u, m, 3);
+      for (int i = 0; i < 3 && model.wind; ++i) wind[i] = unknown(model, state, kWindNorth + i);
       const PathAir<L> air = path_air(model, state, wind, m);
       for (int s = 0; s < ny; ++s)
         path_output(model.sensors[present[s]], state, air).store(&Y_[s][side * R + b]);
@@ -203,12 +203,12 @@ int Unscented<T, R>::update(const PathModel<T>& model, const T* u, const T* z, T
   bool close = false;  // subtractions would cancel more than six digits
   for (int s = 0; s < ny; ++s) {
     const T value = Y_[s][n];
-    for (int b = n + 1; b < R; ++b) Y_[s][b] = Y_[s][R + b] = value;
+    for (int b = n; b < R; ++b) Y_[s][b] = Y_[s][R + b] = value;
     const T mean = center(Y_[s], value, n, DY_[s]);
     middle[s] = value - mean;
     e[s] = wrapped(model.sensors[present[s]].quantity, z[present[s]] - mean);
     clear<R>(C_[s]);
-    for (int j = 0; j < n; ++j) add_scaled<R>(C_[s], DY_[s][j], U_[j]);
+    for (int j = 0; j < n; ++j) add_scaled_from<R>(j, C_[s], DY_[s][j], U_[j]);
   }
   for (int s = 0; s < ny; ++s) {
     products(Y_, s, ny, n, middle, S[s]);
@@ -228,7 +228,7 @@ int Unscented<T, R>::update(const PathModel<T>& model, const T* u, const T* z, T
       add_scaled<R>(C_[t], -f, C_[s]);
       e[t] -= f * e[s];
     }
-    for (int i = 0; i < n; ++i) add_scaled<R>(P[i], -C_[s][i] * inverse, C_[s]);
+    for (int i = 0; i < n; ++i) add_scaled_from<R>(i, P[i], -C_[s][i] * inverse, C_[s]);
     add_scaled<R>(x, e[s] * inverse, C_[s]);
     innovation[present[s]] = e[s];
     deviation[present[s]] = std::sqrt(S[s][s]);

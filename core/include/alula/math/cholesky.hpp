@@ -33,7 +33,7 @@ inline int cholesky(const T (*A)[R], T (*U)[R], int n) {
       ++raised;
     }
     scale<R>(row, T(1) / std::sqrt(pivot), row);
-    for (int i = k + 1; i < n; ++i) add_scaled<R>(U[i], -row[i], row);
+    for (int i = k + 1; i < n; ++i) add_scaled_from<R>(i, U[i], -row[i], row);
   }
   return raised;
 }

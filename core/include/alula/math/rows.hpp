@@ -15,6 +15,16 @@ inline void add_scaled(T* y, T f, const T* x) {
   for (int k = 0; k < R; k += kLanes) (L::load(y + k) + factor * L::load(x + k)).store(y + k);
 }
 
+// y += f x where nothing before `first` counts: the left half is left out where it can be.
+template <int R, class T>
+inline void add_scaled_from(int first, T* y, T f, const T* x) {
+  constexpr int half = R / 2 / kLanes * kLanes;
+  if (first < half)
+    add_scaled<R>(y, f, x);
+  else
+    add_scaled<R - half>(y + half, f, x + half);
+}
+
 // y = f x
 template <int R, class T>
 inline void scale(T* y, T f, const T* x) {
