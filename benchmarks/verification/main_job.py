@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from verification.harv import harv_reconstruction
+from verification.published import ATTAS_BIASES, TWIN_OTTER
 from verification.registry import row
 from verification.run import (
     DATA,
@@ -23,16 +24,6 @@ from verification.run import (
     run_tests,
     within,
 )
-
-# Klein and Morelli's examples: value, published (coloured) standard error, margin of the value.
-TWIN_OTTER = {
-    "CZ_alpha": (-6.3489, 0.0200, 5e-3),
-    "CZ_q": (-18.4061, 0.5524, 5e-3),
-    "CZ_de": (-0.6261, 0.0153, 5e-3),
-    "Cm_alpha": (-1.4762, 0.0224, 1e-3),
-    "Cm_q": (-36.3533, 0.689, 1e-3),
-    "Cm_de": (-1.8688, 0.0204, 1e-3),
-}
 
 
 @row(
@@ -54,17 +45,6 @@ def twin_otter(quick: bool) -> tuple[str, bool]:
     )
     plain = all(found[n]["se_white"] > 0 for n in TWIN_OTTER)
     return f"values: {values[0]}; standard errors: {errors[0]}", values[1] and errors[1] and plain
-
-
-# Jategaonkar, second edition; margins of the table.
-ATTAS_BIASES = {
-    "b_ax": (6.76242e-3, 2e-3),
-    "b_ay": (-1.50664e-3, 2e-3),
-    "b_az": (8.39892e-2, 1e-2),
-    "b_p": (1.02555e-3, 1e-4),
-    "b_q": (3.40891e-3, 1e-4),
-    "b_r": (9.96192e-4, 1e-4),
-}
 
 
 @row(

@@ -5,19 +5,10 @@ import pytest
 from identify_flights import twin_otter
 
 from alula.identify import identify_equation_error
+from verification.published import TWIN_OTTER
 
 MODELS = {"CZ": "1 + alpha + qhat + de", "Cm": "1 + alpha + qhat + de"}
 
-# name: published value, published standard error (coloured), tolerance of the value. CZ was
-# published from slightly smoothed regressors; 0.5 % covers that.
-PUBLISHED = {
-    "CZ_alpha": (-6.3489, 0.0200, 5e-3),
-    "CZ_q": (-18.4061, 0.5524, 5e-3),
-    "CZ_de": (-0.6261, 0.0153, 5e-3),
-    "Cm_alpha": (-1.4762, 0.0224, 1e-3),
-    "Cm_q": (-36.3533, 0.689, 1e-3),
-    "Cm_de": (-1.8688, 0.0204, 1e-3),
-}
 PLAIN = {"Cm_alpha": 0.0122, "Cm_q": 0.430, "Cm_de": 0.0121}
 
 
@@ -26,9 +17,9 @@ def result():
     return identify_equation_error([twin_otter()], MODELS)
 
 
-@pytest.mark.parametrize("name", PUBLISHED)
+@pytest.mark.parametrize("name", TWIN_OTTER)
 def test_published_value_and_coloured_standard_error(result, name):
-    value, se, tolerance = PUBLISHED[name]
+    value, se, tolerance = TWIN_OTTER[name]
     assert result[name].value == pytest.approx(value, rel=tolerance)
     assert result[name].se == pytest.approx(se, rel=0.05)  # the sources round to three figures
     assert result[name].verdict == "ok"

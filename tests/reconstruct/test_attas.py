@@ -4,17 +4,7 @@ import numpy as np
 import pytest
 
 from real import reconstructed
-
-# Jategaonkar, Flight Vehicle System Identification, 2nd ed.: output error over the three maneuvers,
-# g = 9.80 m/s2; then what the issue of the method allows: the initial states differ a little.
-PUBLISHED = {
-    "b_ax": (6.76242e-3, 2e-3),
-    "b_ay": (-1.50664e-3, 2e-3),
-    "b_az": (8.39892e-2, 1e-2),
-    "b_p": (1.02555e-3, 1e-4),
-    "b_q": (3.40891e-3, 1e-4),
-    "b_r": (9.96192e-4, 1e-4),
-}
+from verification.published import ATTAS_BIASES
 
 
 @pytest.fixture(scope="module")
@@ -26,9 +16,9 @@ def constants(result):
     return {c.name: c for c in result.constants}
 
 
-@pytest.mark.parametrize("name", PUBLISHED)
+@pytest.mark.parametrize("name", ATTAS_BIASES)
 def test_output_error_finds_the_published_biases(solved, name):
-    value, tolerance = PUBLISHED[name]
+    value, tolerance = ATTAS_BIASES[name]
     assert constants(solved["ml"])[name].value == pytest.approx(value, abs=tolerance)
 
 
@@ -43,13 +33,13 @@ def test_kinematics_with_the_estimates_fit_the_measurements(solved, method):
 
 
 @pytest.mark.parametrize("method", ["ekf", "ukf"])
-@pytest.mark.parametrize("name", PUBLISHED)
+@pytest.mark.parametrize("name", ATTAS_BIASES)
 def test_filters_agree_with_the_publication_within_their_own_errors(solved, method, name):
     constant = constants(solved[method])[name]
-    assert abs(constant.value - PUBLISHED[name][0]) < 3.0 * constant.se
+    assert abs(constant.value - ATTAS_BIASES[name][0]) < 3.0 * constant.se
 
 
-@pytest.mark.parametrize("name", PUBLISHED)
+@pytest.mark.parametrize("name", ATTAS_BIASES)
 def test_filters_agree_with_each_other(solved, name):
     ekf, ukf = constants(solved["ekf"])[name], constants(solved["ukf"])[name]
     # One model, one weighting: what differs is the treatment of curvature, far below the errors.
