@@ -164,3 +164,16 @@ def test_every_sample_of_the_window_is_used(sound: SmallProject) -> None:
     fit = sound.identify().envelope["result"]["fit"]
     assert {f["n"] for f in fit.values()} == {len(sound.table)}
     assert np.isfinite([f["r2"] for f in fit.values()]).all()
+
+
+def test_a_mistake_of_our_own_is_told_apart(
+    small: SmallProject, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(*_: object, **__: object) -> None:
+        raise ZeroDivisionError("a slip")
+
+    monkeypatch.setattr("alula.campaign.run_project", broken)
+    ran = alula("identify", small.path)
+    assert ran.code == 70  # neither 'not identifiable' nor 'bad input'
+    assert "ZeroDivisionError: a slip" in ran.err
+    assert "please report it" in ran.err

@@ -8,6 +8,7 @@ import os
 import re
 import sys
 import time
+import traceback
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -28,6 +29,7 @@ _STEERING = re.compile(
 
 Kind = Literal["", "report", "model", "json"]
 Status = Literal["ok", "not_identifiable", "check_failed", "bad_input"]
+OWN_FAULT = 70  # sysexits: internal software error
 EXIT: Mapping[Status, int] = {"ok": 0, "not_identifiable": 1, "check_failed": 1, "bad_input": 2}
 
 JsonOption = Annotated[
@@ -90,6 +92,16 @@ class Command:
         except BadInput as error:
             self.status, self.messages = "bad_input", error.messages
             self.result = {}
+        except typer.Exit:
+            raise
+        except Exception:
+            # Alula's own mistake, not the user's; told apart from 'not identifiable' by its code.
+            _out(
+                traceback.format_exc() + "This is a mistake in Alula; please report it with the "
+                "lines above. No file was left half written.\n",
+                sys.stderr,
+            )
+            raise typer.Exit(OWN_FAULT) from None
         self._finish()
 
     def _json_can_be_written(self) -> None:

@@ -4,8 +4,8 @@ Arguments: kind, file, output .npz, memory limit in bytes, processor time limit 
 Prints the index of the arrays as JSON.
 """
 
+import contextlib
 import json
-import resource
 import struct
 import sys
 from typing import Any
@@ -14,10 +14,17 @@ import numpy as np
 
 
 def limit(memory: int, seconds: int) -> None:
-    """Limits that turn a runaway decoder into a MemoryError or a signal."""
-    resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
-    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    """Limits that turn a runaway decoder into a MemoryError or a signal.
+
+    Where the system has none (Windows) or not all of them (macOS), the parent's clock is the limit.
+    """
+    try:
+        import resource
+    except ImportError:
+        return
+    for kind, most in (("AS", memory), ("CPU", seconds), ("CORE", 0)):
+        with contextlib.suppress(ValueError, OSError):
+            resource.setrlimit(getattr(resource, f"RLIMIT_{kind}"), (most, most))
 
 
 def flatten(name: str, value: Any, left: list[str]) -> list[tuple[str, Any]]:
