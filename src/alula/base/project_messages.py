@@ -40,8 +40,8 @@ def read_toml(path: Path) -> tuple[str, dict[str, Any], str]:
             where=str(path),
             expected="TOML in UTF-8",
             found=str(error),
-            do="Mend the line named; strings need quotes, tables need [brackets]. If this is a log, "
-            "`alula new` makes a project file for it.",
+            do="Mend the line named; strings need quotes, tables need [brackets]. A log? "
+            "`alula new` makes a project file for one.",
         ) from None
     return text, tree, hashlib.sha256(data).hexdigest()
 
