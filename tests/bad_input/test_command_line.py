@@ -269,6 +269,7 @@ def test_overlapping_windows(small: SmallProject) -> None:
 def test_formula_with_an_unknown_term(small: SmallProject) -> None:
     small.edit('Cm = "1 + alpha + qhat + de"', 'Cm = "1 + alpha + qhatt + de"')
     small.refused("unknown_term", "qhatt", "'qhat'")
+    assert alula("check", small.path).code == 2  # before anything is reconstructed
 
 
 def test_formula_that_is_code(small: SmallProject) -> None:

@@ -13,6 +13,7 @@ from alula.flight import Flight, Maneuver, Motion
 from alula.logs.card import LogCard, log_card
 from alula.logs.maneuvers import maneuvers
 from alula.logs.reader import read_all
+from alula.model import parse
 from alula.reconstruct.recorded import recorded_motion
 
 Progress = Callable[[str], None]
@@ -69,6 +70,8 @@ def check_project(
             do="Name a ready one or write one; docs/aircraft_file.md shows how.",
         )
     aircraft = load_aircraft(project.aircraft)
+    for formula in project.identify.models.values():
+        parse(formula)  # said now, not after the logs were reconstructed
     progress("reading logs")
     flights = read_all(project)
     found, said = maneuvers(project, flights)
