@@ -33,6 +33,8 @@ class _Slots:
         return self.slot_of[key]
 
     def factor(self, factor: Factor) -> int:
+        if factor.kind in ("sign", "table"):
+            raise NotImplementedError  # steps of the core that are to come
         slot = 1 + VARIABLES.index(factor.variable)
         if factor.kind == "abs":
             slot = self.step(_ABSOLUTE, slot)
