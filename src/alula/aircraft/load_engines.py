@@ -130,9 +130,11 @@ def _machine(table: EngineTable) -> PistonEngine | ElectricMotor | Turbofan | No
             height=frozen(t.height),
             idle=frozen(t.idle),
             military=frozen(t.military),
-            maximum=frozen(t.maximum or t.military),
+            maximum=None if t.maximum is None else frozen(t.maximum),
+            military_at=t.military_at,
             lag=t.lag,
             angular_momentum=t.angular_momentum,
+            idle_speed=t.idle_speed,
             consumption=t.consumption_kg_N_h / 3600.0,
         )
     if table.propeller is None:
@@ -148,6 +150,7 @@ def _machine(table: EngineTable) -> PistonEngine | ElectricMotor | Turbofan | No
             omega=frozen(RPM * np.array(p.speed_rpm)),
             torque=frozen(p.torque),
             friction=p.friction,
+            idle=p.idle,
             consumption=p.consumption_g_kWh * 1e-3 / 3.6e6,
         )
     if table.electric is None:

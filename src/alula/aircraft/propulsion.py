@@ -36,8 +36,9 @@ class PistonEngine:
 
     reduction: crankshaft speed over propeller speed. gear_sense: +1 where the crankshaft turns with
     the propeller, -1 against it. crank_inertia: kg m2 of all that turns at crankshaft speed.
-    omega: (k,) rad/s of the crankshaft, torque: (k,) N m at full throttle at sea level. friction:
-    N m that drags the crankshaft. consumption: kg/J, fuel over shaft energy.
+    omega: (k,) rad/s of the crankshaft, torque: (k,) N m that it gives at full throttle at sea
+    level. friction: N m that drags it with the throttle closed and ignition off. idle: opening that
+    the closed throttle leaves, 0 to 1. consumption: kg/J, fuel over shaft energy.
     """
 
     propeller: Propeller
@@ -47,6 +48,7 @@ class PistonEngine:
     omega: Array
     torque: Array
     friction: float
+    idle: float
     consumption: float
 
 
@@ -77,19 +79,22 @@ class ElectricMotor:
 class Turbofan:
     """A turbofan by tables of its net thrust, N.
 
-    mach: (k,), height: (l,) m, both increasing. idle, military, maximum: (k, l) N; maximum is the
-    military thrust where there is no afterburner. lag: s, of the first order between throttle and
-    thrust. angular_momentum: kg m2/s of the rotors at military power, along the thrust where
-    positive. consumption: kg/(N s), fuel over thrust.
+    mach: (k,), height: (l,) m, both increasing. idle, military, maximum: (k, l) N; maximum is None
+    where there is no afterburner. military_at: throttle of military thrust, 1 without afterburner.
+    lag: s, of the first order between throttle and power. angular_momentum: kg m2/s of the rotors
+    at full power, along the thrust where positive; idle_speed: share of it at idle.
+    consumption: kg/(N s), fuel over thrust.
     """
 
     mach: Array
     height: Array
     idle: Array
     military: Array
-    maximum: Array
+    maximum: Array | None
+    military_at: float
     lag: float
     angular_momentum: float
+    idle_speed: float
     consumption: float
 
 

@@ -12,6 +12,7 @@ from alula.aircraft.schema_table import NotNegative, Number, Positive, Table, Ve
 KNOTS = 24  # the core's capacity for a curve
 Knots = Annotated[list[Number], Field(min_length=2, max_length=KNOTS)]
 Axis = Annotated[list[Number], Field(min_length=2, max_length=64)]
+Share = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
 Grid = Annotated[list[Axis], Field(min_length=2, max_length=64)]
 
 
@@ -56,7 +57,10 @@ class PistonTable(Table):
     crank_inertia: NotNegative = Field(default=0.0, description="at crankshaft speed, kg m2")
     speed_rpm: Knots = Field(description="crankshaft speed, revolutions per minute")
     torque: Knots = Field(description="at full throttle at sea level, N m")
-    friction: NotNegative = Field(default=0.0, description="drag torque of the crankshaft, N m")
+    friction: NotNegative = Field(
+        default=0.0, description="drag of the crankshaft, throttle closed, ignition off, N m"
+    )
+    idle: Share = Field(default=0.0, description="opening that the closed throttle leaves")
     consumption_g_kWh: NotNegative = Field(
         default=0.0, description="fuel over shaft energy, g/(kW h); 0: fuel is not modeled"
     )
@@ -99,17 +103,23 @@ class TurbofanTable(Table):
     height: Axis = Field(description="m")
     idle: Grid = Field(description="N, one row per Mach number")
     military: Grid = Field(description="N")
-    maximum: Grid | None = Field(default=None, description="N, with afterburner; default military")
+    maximum: Grid | None = Field(default=None, description="N, with afterburner; default none")
+    military_at: Share = Field(default=1.0, description="throttle of military thrust")
     lag: Positive = Field(description="of the first order, s")
     angular_momentum: Number = Field(
-        default=0.0, description="of the rotors at military power, kg m2/s, along the thrust"
+        default=0.0, description="of the rotors at full power, kg m2/s, along the thrust"
     )
+    idle_speed: Share = Field(default=1.0, description="share of the rotors' speed at idle")
     consumption_kg_N_h: NotNegative = Field(
         default=0.0, description="fuel over thrust, kg/(N h); 0: fuel is not modeled"
     )
 
     @model_validator(mode="after")
     def _tables(self) -> TurbofanTable:
+        if (self.maximum is None) != (self.military_at == 1.0) or self.military_at == 0.0:
+            found = f"military_at {self.military_at:g}"
+            found += ", no 'maximum'" if self.maximum is None else " and 'maximum'"
+            raise ValueError(f"military_at between 0 and 1 with 'maximum', else 1|{found}")
         _increasing("mach", self.mach)
         _increasing("height", self.height)
         for key in ("idle", "military", "maximum"):
