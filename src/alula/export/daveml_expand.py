@@ -138,18 +138,29 @@ class Expander:
 
     def piecewise(self, e: Expression) -> Polynomial:
         """Branches by the sign of one variable: their mean and, signed, half their difference."""
-        if len(e.args) != 3 or e.args[1].op not in RELATIONS[:4]:
-            raise self.refused("a piecewise with more than two branches or another condition")
-        condition = e.args[1]
-        left, right = (self.expand(a) for a in condition.args)
-        difference = add(left, scaled(right, -1.0))
+        conditions = e.args[1:-1:2]
+        if len(e.args) not in (3, 5) or any(c.op not in RELATIONS[:4] for c in conditions):
+            raise self.refused("a piecewise with more branches or another condition")
+        differences = []
+        for c in conditions:
+            left, right = (self.expand(a) for a in c.args)
+            differences.append(add(left, scaled(right, -1.0)))
+        condition, difference = conditions[0], differences[0]
         first, second = self.expand(e.args[0]), self.expand(e.args[2])
         known = as_constant(difference)
-        if known is not None:
+        if known is not None and len(conditions) == 1:
             return first if self.holds(condition.op, known.value) else second
         line = as_line(difference)
         if line is None or line[2] != 0.0 or line[0].kind != "plain":
             raise self.refused("a piecewise whose condition is not the sign of one variable")
+        if len(conditions) == 2:  # below, above, and the mean of both at zero
+            opposite = as_line(differences[1]) == line and {c.op for c in conditions} == {
+                "lt",
+                "gt",
+            }
+            middle = scaled(add(first, second), -0.5)
+            if not opposite or add(self.expand(e.args[4]), middle):
+                raise self.refused("a piecewise of three branches that is not a sign")
         above = (line[1] > 0.0) == (condition.op in ("gt", "geq"))  # the first branch holds there
         high, low = (first, second) if above else (second, first)
         mean = scaled(add(high, low), 0.5)

@@ -12,7 +12,15 @@ from alula.base.arrays import Array
 from alula.base.messages import BadInput, Message, note, refuse
 from alula.export.daveml_expand import Expander
 from alula.export.daveml_model import DaveModel, DaveVariable
-from alula.export.daveml_names import ALIASES, INPUTS, OUTPUTS, REFERENCE, sign_of, unit_scale
+from alula.export.daveml_names import (
+    ALIASES,
+    INPUTS,
+    OUTPUTS,
+    POINT_NAMES,
+    REFERENCE,
+    sign_of,
+    unit_scale,
+)
 from alula.export.daveml_polynomial import (
     Monomial,
     Polynomial,
@@ -127,7 +135,7 @@ def _assembled(
         geometry,
         axes="stability" if {"CD", "CL"} & set(wanted) else "body",
         covariance=_covariance(dave, list(values.values())),
-        reference_point=reference_point,
+        reference_point=_point(dave) if reference_point is None else reference_point,
         validity={n: r for n, r in limits.items() if np.isfinite(r).all()},
         provenance={
             "file": Path(dave.path).name,
@@ -158,6 +166,13 @@ def _reference(dave: DaveModel, given: Reference | None) -> Reference:
             do="Give the reference area, span and chord yourself.",
         )
     return Reference(found["S"], found["b"], found["c"])
+
+
+def _point(dave: DaveModel) -> Array | None:
+    """Where the file itself, one of Alula's, says that the moments act."""
+    found = {v.name: v.initial for v in dave.variables.values()}
+    point = [found.get(name) for name in POINT_NAMES]
+    return None if None in point else np.array(point, dtype=np.float64)
 
 
 def _coefficients(

@@ -29,6 +29,8 @@ REFERENCE: dict[str, tuple[str, str]] = {
     "referenceWingSpan": ("b", "m"),
     "referenceWingChord": ("c", "m"),
 }
+# Not of the standard: where the moments act, m in body axes from the aircraft file's datum.
+POINT_NAMES = tuple(f"bodyPositionOfMrcWrtDatum_{axis}" for axis in "XYZ")
 OUTPUTS: dict[str, tuple[str, str]] = {
     "aeroBodyForceCoefficient_X": ("CX", "+FWD"),
     "aeroBodyForceCoefficient_Y": ("CY", "+RT"),
