@@ -63,9 +63,9 @@ def validate(
     messages: list[Message] = []
     for case in cases:
         progress(f"flying {case.motion.maneuver.id} through the model")
-        offsets, said = _offsets(model, case, trim)
+        offsets, said = _trim(model, case, trim)
         one, more = fly_case(
-            model, case, gravity=gravity, offsets=offsets, draws=draws, seed=seed, horizon=horizon
+            model, case, gravity=gravity, trim=offsets, draws=draws, seed=seed, horizon=horizon
         )
         flown.append(one)
         messages += [*said, *more, *_label(one)]
@@ -81,10 +81,12 @@ def validate(
     )
 
 
-def _offsets(model: AeroModel, case: Case, trim: Trim) -> tuple[dict[str, float], list[Message]]:
-    """Constants that make the model's coefficients equal the measured ones in the mean."""
+def _trim(
+    model: AeroModel, case: Case, trim: Trim
+) -> tuple[Callable[[AeroModel], dict[str, float]], list[Message]]:
+    """What makes a model's coefficients equal the measured ones in the mean, by adding constants."""
     if trim == "none":
-        return {}, []
+        return _as_it_is, []
     motion = case.motion
     where = f"maneuver {motion.maneuver.id}"
     count = len(motion.t)
@@ -95,7 +97,7 @@ def _offsets(model: AeroModel, case: Case, trim: Trim) -> tuple[dict[str, float]
         words = f"the {motion.t[max(count - 1, 0)] - motion.t[0]:.3g} s before the input"
     names = [n for n in model.coefficients if n in case.coefficients]
     if count < LEAST_ENTRY or not names:
-        return {}, [
+        return _as_it_is, [
             warn(
                 "no_trim_offset",
                 where=where,
@@ -104,9 +106,13 @@ def _offsets(model: AeroModel, case: Case, trim: Trim) -> tuple[dict[str, float]
                 do="The model was flown as it is. Begin the window earlier, or use --trim whole.",
             )
         ]
-    expected = model.evaluate({n: v[:count] for n, v in case.variables.items()})
-    offsets = {n: float(np.mean(case.coefficients[n][:count] - expected[n])) for n in names}
-    listed = ", ".join(f"{n} {v:+.3g}" for n, v in offsets.items())
+    before = {n: v[:count] for n, v in case.variables.items()}
+
+    def offsets(some: AeroModel) -> dict[str, float]:
+        expected = some.evaluate(before)
+        return {n: float(np.mean(case.coefficients[n][:count] - expected[n])) for n in names}
+
+    listed = ", ".join(f"{n} {v:+.3g}" for n, v in offsets(model).items())
     return offsets, [
         note(
             "trim_offset",
@@ -116,6 +122,10 @@ def _offsets(model: AeroModel, case: Case, trim: Trim) -> tuple[dict[str, float]
             do="They were added to the model's coefficients in this maneuver.",
         )
     ]
+
+
+def _as_it_is(model: AeroModel) -> dict[str, float]:
+    return {}
 
 
 def _label(one: Flown) -> list[Message]:
