@@ -267,9 +267,10 @@ def _decided(
         return _row(flown, test, tolerance, criteria, "pass", window, said)
     if any(c.met is None for c in criteria):
         worst = next(c for c in criteria if c.met is None)
+        error = f"{worst.deviation_se:.2g}" + ("" if worst.unit == "1" else f" {worst.unit}")
         why = (
-            f"{said} leave a standard error of {worst.deviation_se:.2g} {worst.unit}".rstrip(" 1")
-            + " in the difference: too large for this tolerance"
+            f"{said} leave a standard error of {error} in the difference: too large for this "
+            "tolerance"
         )
         return _row(flown, test, tolerance, criteria, "not_judged", window, why)
     return _row(flown, test, tolerance, criteria, "fail", window, said)

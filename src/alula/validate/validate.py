@@ -18,6 +18,7 @@ from alula.validate.windows import find_input
 Trim = Literal["none", "entry", "whole"]
 DRAWS = 40  # the standard deviation of a band is then known to a ninth
 LEAST_ENTRY = 10  # samples before the input that make a mean
+CLOSED = 0.2  # m/s2, mean; a fiftieth of g, above the bias of any accelerometer worth identifying
 GRAVITY = 9.80665  # m/s2, standard
 
 
@@ -68,7 +69,7 @@ def validate(
             model, case, gravity=gravity, trim=offsets, draws=draws, seed=seed, horizon=horizon
         )
         flown.append(one)
-        messages += [*said, *more, *_label(one)]
+        messages += [*_closure(case), *said, *more, *_label(one)]
     messages += _validity(model, flown)
     return Validation(
         model=model.name,
@@ -84,7 +85,7 @@ def validate(
 def _trim(
     model: AeroModel, case: Case, trim: Trim
 ) -> tuple[Callable[[AeroModel], dict[str, float]], list[Message]]:
-    """What makes a model's coefficients equal the measured ones in the mean, by adding constants."""
+    """The constants that make a model's coefficients equal the measured ones in the mean."""
     if trim == "none":
         return _as_it_is, []
     motion = case.motion
@@ -126,6 +127,32 @@ def _trim(
 
 def _as_it_is(model: AeroModel) -> dict[str, float]:
     return {}
+
+
+def _closure(case: Case) -> list[Message]:
+    """A warning where recorded coefficients and thrust do not add up to the specific force."""
+    motion, body = case.motion, ("CX", "CY", "CZ")
+    if not set(body) <= case.coefficients.keys():
+        return []
+    pressure = 0.5 * motion.rho * motion.V**2 * case.area / case.airframe.mass
+    force = np.column_stack([case.coefficients[n] for n in body]) * pressure[:, None]
+    if case.thrust is not None:
+        force += np.outer(case.thrust / case.airframe.mass, case.airframe.thrust_direction)
+    left = np.mean(np.column_stack([motion.ax, motion.ay, motion.az]) - force, axis=0)
+    k = int(np.argmax(np.abs(left)))
+    if abs(left[k]) <= CLOSED:
+        return []
+    return [
+        warn(
+            "forces_do_not_close",
+            where=f"maneuver {motion.maneuver.id}",
+            expected="coefficients times dynamic pressure plus thrust equal to mass times the "
+            "specific force",
+            found=f"{left[k]:+.3g} m/s2 missing in {'xyz'[k]} on the average",
+            do="State mass, [[engines]] with their channels and the reference area as the "
+            "recorded coefficients were made with; the flight cannot be right without.",
+        )
+    ]
 
 
 def _label(one: Flown) -> list[Message]:
