@@ -217,7 +217,7 @@ def _oscillation_rows(
         allowed = max(1.0, 0.2 * abs(first))
         rows.append(
             _decided(flown, test, words[2], window, measured.cycles, [
-                _against("time from bank to sideslip", "s", first, second, allowed, spread)
+                _against("bank to sideslip", "s", first, second, allowed, spread)
             ])
         )  # fmt: skip
     return rows
@@ -234,7 +234,7 @@ def _damping(measured: Oscillation, model: Oscillation) -> list[Criterion]:
         )
         out.append(
             _against(
-                "time to half amplitude" if halves[0] > 0 else "time to double amplitude", "s",
+                "time to half" if halves[0] > 0 else "time to double", "s",
                 abs(halves[0]), abs(halves[1]), allowed, float(relative * abs(halves[0])),
             )
         )  # fmt: skip

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from alula.report.html import Html, escape, join, table, tag
 from alula.report.names import meaning
-from alula.report.numbers import MISSING, number, percent, shown, span
+from alula.report.numbers import MISSING, number, percent, plus_minus, shown, span
 from alula.report.pictures import mark
 from alula.validate.result import Criterion, Evidence, Flown, Validation
 
@@ -20,6 +20,7 @@ SEEN = {
     "yes": "seen by the estimate: no validation",
     "unknown": "not known whether the estimate saw it",
 }
+_SHORT = {"yes": "seen by the estimate", "unknown": "seen? not known"}
 _UNIT = {"deg": "°", "deg/s": "°/s", "1": ""}
 
 
@@ -82,7 +83,6 @@ def evidence(result: Validation) -> Html:
         "Model": result.model,
         "Where it comes from": result.source,
         "Judged by": result.regulation,
-        "Outcome": result.status,
     }
     return join(
         [
@@ -144,7 +144,7 @@ def _index(result: Validation) -> Html:
         ],
         rows,
         numeric=(5, 6, 7, 8),
-        class_="evidence",
+        class_="evidence dense",
     )
 
 
@@ -159,10 +159,15 @@ def _value(value: float, c: Criterion) -> Html:
 
 
 def _difference(c: Criterion) -> Html:
-    error = f"\u00a0±\u00a0{number(c.deviation_se, 2)}" if c.deviation_se > 0.0 else ""
-    sign = "+" if c.deviation > 0.0 else ""
-    unit = _UNIT.get(c.unit, f"\u00a0{c.unit}")
-    return escape(f"{sign}{number(c.deviation, 3)}{error}{unit}")
+    known = c.deviation_se > 0.0
+    text = plus_minus(c.deviation, c.deviation_se) if known else number(c.deviation, 3)
+    sign = "+" if c.deviation > 0.0 and not text.startswith("(") else ""
+    return escape(sign + text + _UNIT.get(c.unit, f"\u00a0{c.unit}"))
+
+
+def _share(value: float) -> str:
+    """A share to a hundredth."""
+    return f"{value:.2f}" if math.isfinite(value) else MISSING
 
 
 def _verdict(e: Evidence) -> Html:
@@ -175,7 +180,7 @@ def _verdict(e: Evidence) -> Html:
     return join(
         [
             mark(level, words),
-            tag("span", SEEN[e.seen], class_="tag") if e.seen in SEEN else "",
+            tag("span", _SHORT[e.seen], class_="tag") if e.seen in SEEN else "",
             tag("span", "; ".join(said), class_="tied") if said else "",
         ]
     )

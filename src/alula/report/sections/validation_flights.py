@@ -155,7 +155,9 @@ def _panels(c: ChannelMatch, tolerance: Array | None) -> Iterator[Panel]:
     if tolerance is not None:
         error = Line("model − flight", factor * (c.model - c.measured), "residual")
         band = Band("tolerance, where judged", factor * tolerance)
-        yield Panel(f"{c.name}, model − flight ({unit})", (error,), (band,), small=True)
+        most = max(float(np.nanmax(band.half)), float(np.abs(error.values).max()))
+        label = f"{c.name}, model − flight ({unit})"
+        yield Panel(label, (error,), (band,), small=True, limit=1.1 * most)
 
 
 def _group(one: Flown) -> str:
