@@ -14,6 +14,7 @@ from alula.cli.contract import Command
 from alula.cli.fly import fly
 from alula.cli.identify import identify
 from alula.cli.new import new
+from alula.cli.plan import plan
 from alula.cli.schema import schema
 from alula.cli.validate import validate
 
@@ -24,7 +25,7 @@ app = typer.Typer(
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )
-for command in (new, check, identify, fly, validate, schema):
+for command in (new, check, identify, plan, fly, validate, schema):
     app.command()(command)
 
 
