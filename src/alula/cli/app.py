@@ -13,9 +13,12 @@ from alula.cli.check import check
 from alula.cli.contract import Command
 from alula.cli.fly import fly
 from alula.cli.identify import identify
+from alula.cli.linearize import linearize
+from alula.cli.modes import modes
 from alula.cli.new import new
 from alula.cli.plan import plan
 from alula.cli.schema import schema
+from alula.cli.trim import trim
 from alula.cli.validate import validate
 
 app = typer.Typer(
