@@ -28,7 +28,7 @@ app = typer.Typer(
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )
-for command in (new, check, identify, plan, fly, validate, schema):
+for command in (new, check, identify, plan, fly, trim, linearize, modes, validate, schema):
     app.command()(command)
 
 
