@@ -12,7 +12,7 @@ from xml.etree.ElementTree import Element, SubElement
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from alula.aircraft import Aircraft, EngineModel, PistonEngine
+from alula.aircraft import EngineModel, PistonEngine
 from alula.base.arrays import Array
 from alula.base.messages import refuse
 from alula.base.units import LBF, SLUG
@@ -28,17 +28,17 @@ _SAMPLES = 400  # of a curve between its ends: the chords err by less than 1e-5 
 _FAR = 100.0
 
 
-def add_engines(root: Element, aircraft: Aircraft, airframe: Airframe) -> Element:
+def add_engines(root: Element, airframe: Airframe) -> Element:
     """Append what the engines need and return their `external_reactions`, to stand last.
 
     Raises BadInput for an engine of a kind that is not exported.
     """
     system = SubElement(root, "system", name="engines")
-    given = sum(e.thrust or 0.0 for e in aircraft.engines)
+    given = sum(e.thrust or 0.0 for e in airframe.engines if e.kind == "given")
     SubElement(system, "property", value=repr(float(given))).text = THRUST
     channel = SubElement(system, "channel", name="engines")
     forces = Element("external_reactions")
-    for i, engine in enumerate(aircraft.engines):
+    for i, engine in enumerate(airframe.engines):
         base = f"alula/engine[{i}]"
         name = f"engine-{i}"
         if engine.kind == "given":
@@ -53,12 +53,12 @@ def add_engines(root: Element, aircraft: Aircraft, airframe: Airframe) -> Elemen
         else:
             raise refuse(
                 "jsbsim_engine",
-                where=f"{aircraft.path}, engines, '{engine.name}'",
+                where=f"engine '{engine.name}'",
                 expected="engines of kind 'given' or 'piston'",
                 found=f"'{engine.kind}'",
                 do="Give the thrust (kind = 'given') for the export.",
             )
-    if not aircraft.engines:
+    if not airframe.engines:
         _forces(forces, "thrust", None, airframe, prop(THRUST))
     return forces
 
@@ -139,8 +139,11 @@ def _axial(engine: EngineModel, airframe: Airframe) -> Element:
 def _forces(
     forces: Element, name: str, engine: EngineModel | None, airframe: Airframe, thrust: Element
 ) -> None:
-    point = airframe.cg if engine is None else np.asarray(engine.position)
-    direction = np.array([1.0, 0.0, 0.0]) if engine is None else engine.direction
+    if engine is None:
+        point = airframe.cg if airframe.thrust_point is None else airframe.thrust_point
+        direction = airframe.thrust_direction
+    else:
+        point, direction = engine.position, engine.direction
     force = SubElement(forces, "force", name=name, frame="BODY")
     function = add_function(force, f"alula/force/{name}-lbs", "Thrust, lbf")
     function.append(op("product", thrust, value(1.0 / LBF)))

@@ -40,8 +40,8 @@ def jsbsim_text(
 ) -> str:
     """The aircraft at one loading as JSBSim's XML.
 
-    airframe: mass properties of that loading. Coefficients are functions outside the axes, about
-    the reference point AERORP; commands become surface positions in rad; engines are functions
+    airframe: mass properties, engines and actuators of that loading. Coefficients are functions
+    outside the axes, about the reference point AERORP; commands become surface positions in rad; engines are functions
     that make their forces and moments. Raises BadInput where JSBSim cannot hold the model.
     """
     root = Element("fdm_config", name=aircraft.name, version="2.0", release="BETA")
@@ -50,8 +50,8 @@ def jsbsim_text(
     _mass_balance(root, airframe)
     _ground_reactions(root, airframe, model)
     SubElement(root, "propulsion")
-    _controls(root, aircraft)
-    forces = add_engines(root, aircraft, airframe)
+    _controls(root, aircraft, airframe)
+    forces = add_engines(root, airframe)
     aerodynamics = SubElement(root, "aerodynamics")
     _variables(aerodynamics)
     add_coefficients(aerodynamics, model)
@@ -130,8 +130,8 @@ def _ground_reactions(root: Element, airframe: Airframe, model: AeroModel) -> No
             element.set("unit", unit)
 
 
-def _controls(root: Element, aircraft: Aircraft) -> None:
-    """Commands to positions in rad: limits, and lag and rate where the file states actuators."""
+def _controls(root: Element, aircraft: Aircraft, airframe: Airframe) -> None:
+    """Commands to positions in rad: limits, and lag and rate where the airframe has actuators."""
     control = SubElement(root, "flight_control", name="FCS")
     limits = limits_of(aircraft)
     # JSBSim makes this one for engines of its own only.
@@ -139,7 +139,7 @@ def _controls(root: Element, aircraft: Aircraft) -> None:
     for name, (command, factor) in COMMANDS.items():
         channel = SubElement(control, "channel", name=name)
         low, high = limits[name]
-        actuator = aircraft.actuators.get(name)
+        actuator = airframe.actuators.get(name)
         position = PROPERTIES[name]
         scaled = position if actuator is None else f"alula/{name}-commanded"
         part = SubElement(channel, "aerosurface_scale", name=f"alula/{name}-scale")
