@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -113,31 +113,41 @@ class Problem:
             left, slope = wanted.residuals(self.names, outputs, values, f0, y, J, Jy)
             return left, slope[:, where] * scale
 
-        inside = 1e-6 * np.minimum(1.0, high - low)
-        z = np.clip(start[where] / scale, low + inside, high - inside)
-
         def left_at(z: Array) -> Array:
             return at(z)[0]
 
         def slope_at(z: Array) -> Array:
             return at(z)[1]
 
-        found = least_squares(
-            left_at, z, jac=slope_at, bounds=(low, high),
-            xtol=1e-12, ftol=1e-12, gtol=1e-12, max_nfev=60,
-        )  # fmt: skip
-        z = np.clip(found.x, low, high)
-        for _ in range(4):  # Newton from nearby, as far as the limits let it
-            left, slope = at(z)
-            if np.max(np.abs(left)) <= 1e-2 * TOLERANCE:
-                break
-            step = np.linalg.lstsq(slope, -left, rcond=None)[0]
-            following = np.clip(z + step, low, high)
-            if np.max(np.abs(at(following)[0])) >= np.max(np.abs(left)):
-                break
-            z = following
+        z = np.clip(start[where] / scale, low, high)
+        z = _newton(at, z, low, high, 10)
+        if np.max(np.abs(at(z)[0])) > TOLERANCE:
+            inside = 1e-6 * np.minimum(1.0, high - low)
+            z = np.clip(start[where] / scale, low + inside, high - inside)
+            z = least_squares(
+                left_at, z, jac=slope_at, bounds=(low, high),
+                xtol=1e-12, ftol=1e-12, gtol=1e-12, max_nfev=60,
+            ).x  # fmt: skip
+            z = _newton(at, np.clip(z, low, high), low, high, 4)
         values = full(z)
         values[np.abs(values) < 1e-13] = 0.0  # rounding: symmetric flight stays symmetric
         f0, y, J, Jy = self._linear(values)
         left, _ = wanted.residuals(self.names, outputs, values, f0, y, J, Jy)
         return Solution(wanted, self.names, values, f0, y, wanted.climb(self.names, values), left)
+
+
+def _newton(
+    at: Callable[[Array], tuple[Array, Array]], z: Array, low: Array, high: Array, steps: int
+) -> Array:
+    """Newton steps as far as the limits let them, while they lower the largest residual."""
+    left, slope = at(z)
+    for _ in range(steps):
+        size = np.max(np.abs(left))
+        if size <= 1e-2 * TOLERANCE or not np.isfinite(size):
+            break
+        following = np.clip(z + np.linalg.lstsq(slope, -left, rcond=None)[0], low, high)
+        left, slope = at(following)
+        if not np.max(np.abs(left)) < size:
+            break
+        z = following
+    return z
