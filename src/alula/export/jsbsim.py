@@ -69,7 +69,7 @@ def export_jsbsim(
             if not c.passed:
                 raise _differs(aircraft, c)
     path = _write(folder, f"{name}_unchecked" if unchecked else name, text)
-    return JsbsimExport(path, comparisons, tuple(_remarks(path, airframe, model, unchecked)))
+    return JsbsimExport(path, comparisons, tuple(_remarks(path, unchecked)))
 
 
 def _write(folder: Path, name: str, text: str) -> Path:
@@ -101,7 +101,7 @@ def _differs(aircraft: Aircraft, c: Comparison) -> Exception:
     )
 
 
-def _remarks(path: Path, airframe: Airframe, model: AeroModel, unchecked: bool) -> list[Message]:
+def _remarks(path: Path, unchecked: bool) -> list[Message]:
     out = []
     if unchecked:
         out.append(
@@ -111,16 +111,6 @@ def _remarks(path: Path, airframe: Airframe, model: AeroModel, unchecked: bool) 
                 expected="a flight in JSBSim beside Alula's",
                 found="none, as asked",
                 do="Check it before you trust it.",
-            )
-        )
-    if any(a.dead_band > 0.0 for a in airframe.actuators.values()):
-        out.append(
-            warn(
-                "dead_band_left_out",
-                where=str(path),
-                expected="actuators without dead band",
-                found="a dead band",
-                do="JSBSim's is another one; lag, rate and limits are exported.",
             )
         )
     return out

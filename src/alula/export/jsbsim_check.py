@@ -16,7 +16,7 @@ from alula.aircraft import Aircraft
 from alula.base.arrays import Array
 from alula.base.messages import refuse
 from alula.export.jsbsim_engine import THRUST
-from alula.export.jsbsim_property import COMMANDS, FT, norm_command
+from alula.export.jsbsim_property import COMMANDS, FT, PROPERTIES, norm_command
 from alula.export.jsbsim_write import jsbsim_name, limits_of
 from alula.model import AeroModel
 from alula.simulate import Airframe, Condition, Trim, fly, trim
@@ -138,7 +138,9 @@ def _flown_twice(
         COMMANDS[n][0]: np.array([norm_command(n, x, limits[n]) for x in controls[n]])
         for n in COMMANDS
     }
-    start = {THRUST: entry.thrust} | _states(airframe, entry)
+    start = {THRUST: entry.thrust} | _states(
+        airframe, {n: float(x[0]) for n, x in flight.states.items()}
+    )
     values = _in_jsbsim(
         folder, jsbsim_name(aircraft), _initial(flight), start, commands, list(names.values())
     )
@@ -184,13 +186,17 @@ def _initial(flight: object) -> dict[str, float]:
     }
 
 
-def _states(airframe: Airframe, entry: Trim) -> dict[str, float]:
-    """Rotors' speeds and separation points to start from, by property."""
+def _states(airframe: Airframe, at: Mapping[str, float]) -> dict[str, float]:
+    """Rotors' speeds, actuators and separation points to start from, by property.
+
+    at: Alula's further states by name.
+    """
     turning = [i for i, e in enumerate(airframe.engines) if e.kind == "piston"]
-    speeds = [x for n, x in entry.further.items() if n.startswith("omega")]
+    speeds = [x for n, x in at.items() if n.startswith("omega")]
     out = {f"alula/engine[{i}]/omega-rad_s": x for i, x in zip(turning, speeds, strict=True)}
+    out |= {PROPERTIES[n]: at[n] for n in airframe.actuators}
     sides = {"X": "alula/stall/X", "X_left": "alula/stall-left/X", "X_right": "alula/stall-right/X"}
-    return out | {p: entry.further[n] for n, p in sides.items() if n in entry.further}
+    return out | {p: at[n] for n, p in sides.items() if n in at}
 
 
 def _in_jsbsim(
