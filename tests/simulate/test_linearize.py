@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.linalg import expm
 
 from alula.base.messages import BadInput
 from alula.core import core
-from alula.simulate import Condition, fly, initial_state, linearize, trim
+from alula.simulate import Condition, fly, initial_state, linearize, modes_of, trim
 from alula.simulate.airframe import core_model
 from alula.simulate.coordinates import flight_state, plant_state, tangent
 from alula.simulate.plant import INPUTS, plant_rates
@@ -238,3 +240,54 @@ def test_no_airspeed_is_refused() -> None:
     plant = core_model(airframe(), light())
     with pytest.raises(BadInput, match="no_flight_angles"):
         linearize(plant, initial_state(0.0, 0.0, 0.0, 900.0), {})
+
+
+def test_on_the_turning_earth() -> None:
+    """Level flight rests there too, with the Earth's and the path's turning in p, q, r; modes move
+    by about the Earth's rate.
+    """
+    asked = Condition(45.0, 1000.0, psi=0.7, place=(0.85, 0.3))
+    flat = airframe()
+    roots = {}
+    for frame in (flat, replace(flat, earth="wgs84")):
+        steady = trim(frame, light(), asked, wind=WIND * [1, 1, 0])
+        plant = core_model(frame, light(), WIND * [1, 1, 0])
+        found = linearize(plant, steady.state, steady.inputs, earth=frame.earth)
+        assert found.unsteady == {}
+        assert found.point["h"] == pytest.approx(1000.0, abs=1e-6)
+        motion = found.motion()
+        roots[frame.earth] = {m.name: m.eigenvalue for m in modes_of(motion, 45.0)}
+    turning = np.array([steady.p, steady.q, steady.r])
+    # Earth's rate and V/R of the path: 7.3e-5 and 7e-6 rad/s
+    assert 6e-5 < np.linalg.norm(turning) < 9e-5
+    place = dict(zip(found.states, found.x0, strict=True))
+    assert (place["lat"], place["lon"]) == pytest.approx((0.85, 0.3), abs=1e-12)
+    assert set(roots["flat"]) == set(roots["wgs84"])
+    for name, root in roots["flat"].items():
+        # gravity at 49 deg and 1000 m is 9.8066 m/s2, too; what is left is the turning
+        assert roots["wgs84"][name] == pytest.approx(root, abs=2e-3), name
+
+
+def test_equals_differences_on_the_turning_earth() -> None:
+    frame = replace(airframe(), earth="wgs84")
+    plant = core_model(frame, light())
+    x0 = np.array([40.0, 0.1, -0.05, 0.3, -0.2, 0.4, 0.8, 0.3, 2.0, 0.85, -0.4, 2000.0])
+    found = linearize(
+        plant, plant_state(x0, np.zeros(3), "wgs84"), {"thrust": 500.0}, earth="wgs84"
+    )
+    # places of 6.4e6 m beside quaternions of 1: weighed for least squares
+    weight = np.concatenate([np.full(3, 1e-7), np.ones(10)])
+
+    def rates(z: np.ndarray) -> np.ndarray:
+        f, _ = plant_rates(plant, plant_state(z, np.zeros(3), "wgs84"), found.u0)
+        T = tangent(z, np.zeros(3), "wgs84")
+        return np.linalg.lstsq(T * weight[:, None], f * weight, rcond=None)[0]
+
+    J = []
+    for i, value in enumerate(found.x0):
+        e = np.zeros(12)
+        # angles by 1e-3, as before; 1e-3 rad of latitude are 6 km and 1e-3 of gravity
+        e[i] = h = 1e-3 * max(abs(value), 1.0)
+        wide = (rates(found.x0 + 2 * e) - rates(found.x0 - 2 * e)) / (4 * h)
+        J.append((4 * (rates(found.x0 + e) - rates(found.x0 - e)) / (2 * h) - wide) / 3)
+    np.testing.assert_allclose(found.A, np.array(J).T, rtol=1e-6, atol=1e-6)

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
-from alula.aircraft import Envelope
+from alula.aircraft import Envelope, load_aircraft
 from alula.base.messages import BadInput
-from alula.model import AeroModel, Reference, aero_model
-from alula.simulate import Condition, Trim, fly, trim, trim_level
+from alula.model import AeroModel, Reference, aero_model, load_model
+from alula.simulate import Condition, Trim, airframe_of, fly, trim, trim_level
 from simulate.light_aircraft import FORMULAS, MASS, VALUES, airframe, light
 
 G = 9.80665
+AIRCRAFT = Path(__file__).parents[2] / "aircraft"
 
 
 def flown(found: Trim, seconds: float = 2.0, **options) -> object:
@@ -237,3 +240,28 @@ def test_held_flaps_stay() -> None:
     assert down.controls["df"] == 0.3
     # lift by flaps replaces lift by angle of attack, but for the elevator's share
     assert up.alpha - down.alpha == pytest.approx(0.8 * 0.3 / VALUES["CL_alpha"], rel=0.1)
+
+
+@pytest.mark.parametrize("V", [11.0, 28.0])
+def test_an_electric_drive_is_trimmed_where_it_would_brake_at_half_throttle(V: float) -> None:
+    """At 28 m/s the windmilling propeller turns faster than half throttle drives it: no current."""
+    aircraft = load_aircraft(AIRCRAFT / "x8.toml")
+    assert aircraft.aero is not None
+    frame = airframe_of(aircraft, engines="modeled", actuators=True)
+    found = trim(frame, load_model(aircraft.aero), Condition(V, 500.0),
+                 limits=aircraft.control_limits, envelope=aircraft.envelope)  # fmt: skip
+    assert 0.3 < found.controls["dt"] < 1.0
+    assert found.thrust == 0.0
+    # actuators stand where they are told to
+    assert found.further["de"] == pytest.approx(found.controls["de"], abs=1e-9)
+
+
+def test_a_piston_engine_at_full_throttle_is_named() -> None:
+    aircraft = load_aircraft(AIRCRAFT / "sportstar.toml")
+    assert aircraft.aero is not None
+    frame = airframe_of(aircraft, engines="modeled")
+    with pytest.raises(BadInput, match="no_trim") as caught:
+        trim(frame, load_model(aircraft.aero), Condition(70.0, 500.0),
+             limits=aircraft.control_limits)  # fmt: skip
+    assert "force along the flight path" in caught.value.messages[0].found
+    assert caught.value.messages[0].found.endswith("at its stop: throttle at 1")

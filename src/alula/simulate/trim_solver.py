@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -55,10 +56,11 @@ class Problem:
         earth: Earth,
     ) -> None:
         self.plant, self.condition, self.earth = plant, condition, earth
-        self.first, self.wind = rest(plant, condition, airframe, held, earth)
-        self.names = tuple(self.first)
+        self._guess = partial(rest, plant, condition, airframe, held, earth)
+        first, self.wind = self._guess()
+        self.names = tuple(first)
         self.n = len(self.names) - len(plant_inputs(plant))
-        start = np.array(list(self.first.values()))
+        start = np.array(list(first.values()))
         effect = self._linear(start)[2][:, self.n :]
         useful = {
             name
@@ -84,9 +86,13 @@ class Problem:
     def solve(self, wanted: Equations | None = None, start: Array | None = None) -> Solution:
         """Bounded least squares from several guesses, until one fits."""
         wanted = wanted or self.equations
-        guesses = [start] if start is not None else wanted.guesses(self.first, self.condition)
+        # A motor that would brake gives no thrust to climb on: more power, then.
+        guesses = [(0.05, 0.5), (0.05, 0.9), (0.0, 0.5), (0.15, 0.5), (-0.05, 0.9)]
         best: Solution | None = None
-        for guess in guesses:
+        for alpha, power in guesses[: 1 if start is not None else None]:
+            guess = start
+            if guess is None:
+                guess = np.array(list(self._guess(alpha, power)[0].values()))
             found = self._from(wanted, guess)
             if best is None or found.residual < best.residual:
                 best = found
