@@ -1,7 +1,8 @@
 #pragma once
-// An aerodynamic model as a table: steps make products, absolute values and ramps out of the base
-// variables; terms add a value times one of these slots to a coefficient. Text is parsed to it
-// outside the core; the same bytes serve host and target, and exporters walk them.
+// An aerodynamic model as a table: steps make products, absolute values, ramps, signs and looked-up
+// values out of the base variables; terms add a value times one of these slots to a coefficient.
+// Text is parsed to it outside the core; the same bytes serve host and target, and exporters walk
+// them. Lookup tables are named by their number; their data lie beside the table, with the caller.
 #include <array>
 #include <cstdint>
 #include <type_traits>
@@ -37,12 +38,14 @@ enum class Operation : std::uint8_t {
   multiply,  // slot a times slot b
   absolute,  // |slot a|
   ramp,      // slot a less the knot, where that is positive; else zero
+  sign,      // -1, 0 or 1 by the sign of slot a
+  lookup,    // lookup table number `table` at slots a, b, c; axes it does not have: slot 0
 };
 
 struct Step {
   double knot;
   Operation operation;
-  std::uint8_t a, b;
+  std::uint8_t a, b, c, table;
 };
 
 struct Term {
