@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "alula/aero/lookup.hpp"
 #include "alula/math/capacity.hpp"
 
 namespace alula {
@@ -60,13 +61,16 @@ struct TermTable {
 };
 static_assert(std::is_trivially_copyable_v<TermTable> && sizeof(TermTable) < 2048);
 
-// Whether every step looks back only, and every index is inside its array.
-constexpr bool well_formed(const TermTable& table) {
+// Whether every step looks back only, and every index is inside its array. table_count: lookup
+// tables that lie beside.
+constexpr bool well_formed(const TermTable& table, int table_count = 0) {
   if (table.step_count > kMaxSteps || table.term_count > kMaxTerms) return false;
   for (int i = 0; i < table.step_count; ++i) {
     const Step& step = table.steps[static_cast<unsigned>(i)];
-    if (step.a >= kVariables + i || step.b >= kVariables + i) return false;
-    if (step.operation > Operation::ramp) return false;
+    const int own = kVariables + i;
+    if (step.a >= own || step.b >= own || step.c >= own) return false;
+    if (step.operation > Operation::lookup) return false;
+    if (step.operation == Operation::lookup && step.table >= table_count) return false;
   }
   for (int k = 0; k < table.term_count; ++k) {
     const Term& term = table.terms[static_cast<unsigned>(k)];
@@ -77,8 +81,9 @@ constexpr bool well_formed(const TermTable& table) {
 }
 
 // Fills the slots behind the base variables, which the caller has put into the first places.
-template <class S>
-constexpr void fill_slots(const TermTable& table, S* slots) {
+// tables: the lookup tables that the steps name.
+template <class S, class T = double>
+constexpr void fill_slots(const TermTable& table, S* slots, const Lookup<T>* tables = nullptr) {
   for (int i = 0; i < table.step_count; ++i) {
     const Step& step = table.steps[static_cast<unsigned>(i)];
     const S& a = slots[step.a];
@@ -87,6 +92,10 @@ constexpr void fill_slots(const TermTable& table, S* slots) {
       case Operation::multiply: out = a * slots[step.b]; break;
       case Operation::absolute: out = a < S(0) ? -a : a; break;
       case Operation::ramp: out = a > S(step.knot) ? a - S(step.knot) : S(0); break;
+      case Operation::sign: out = a > S(0) ? S(1) : a < S(0) ? S(-1) : S(0); break;
+      case Operation::lookup:
+        out = lookup(tables[step.table], a, slots[step.b], slots[step.c]);
+        break;
     }
   }
 }

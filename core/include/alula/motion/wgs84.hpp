@@ -4,7 +4,7 @@
 // Constants: NIMA TR8350.2, 3rd ed., Tables 3.1 and 3.3; J2 as in NASA/TM-2015-218675.
 #include <cmath>
 
-#include "alula/math/vec3.hpp"
+#include "alula/math/quaternion.hpp"
 
 namespace alula {
 
@@ -79,6 +79,16 @@ constexpr Mat3<S> north_east_down(const Geodetic<S>& at) {
   const S &s = at.sin_latitude, &c = at.cos_latitude;
   const S &sl = at.sin_longitude, &cl = at.cos_longitude;
   return {{{-(s * cl), -(s * sl), c}, {-sl, cl, S(0)}, {-(c * cl), -(c * sl), -s}}};
+}
+
+// The turn from ECEF axes to north, east, down at latitude and longitude (rad).
+template <class T>
+Quaternion<T> north_east_down_attitude(const T& latitude, const T& longitude) {
+  using std::cos;
+  using std::sin;
+  const T half_pitch = T(-0.5) * (latitude + T(1.57079632679489661923L));
+  const Quaternion<T> east{cos(T(0.5) * longitude), T(0), T(0), sin(T(0.5) * longitude)};
+  return east * Quaternion<T>{cos(half_pitch), T(0), sin(half_pitch), T(0)};
 }
 
 // Attraction, m/s2, ECEF axes, without the centrifugal part (Stevens and Lewis, 2nd ed., 1.4-16).
