@@ -25,4 +25,3 @@ void bind_aero(nb::module_& m);
 void bind_atmosphere(nb::module_& m);
 void bind_simulate(nb::module_& m);
 void bind_aircraft(nb::module_& m);
-void bind_fly(nb::module_& m);

@@ -8,6 +8,5 @@ NB_MODULE(ALULA_MODULE, m) {
   bind_aero(m);
   bind_atmosphere(m);
   bind_aircraft(m);
-  bind_fly(m);
   bind_simulate(m);
 }

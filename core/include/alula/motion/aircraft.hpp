@@ -27,6 +27,19 @@ void body_rate(const FlightState<S>& x, const Place<S>& at, const Loads<S>& load
   for (int i = 0; i < kBodyStates; ++i) rate[i] = rates[i];
 }
 
+// How the wind grows with height, 1/s: the slope of wind_at.
+template <class S, class T>
+Vec3<S> wind_slope(const Wind<T>& wind, const S& height) {
+  Vec3<S> slope{S(wind.shear.x), S(wind.shear.y), S(wind.shear.z)};
+  const S z = height - wind.ground;
+  if (wind.logarithmic && value_of(z) > T(kLowestProfile) && value_of(z) < T(kHighestProfile)) {
+    const T reference = limited(wind.reference_height - wind.ground, T(kLowestProfile),
+                                T(kHighestProfile));
+    slope = slope + (T(1) / std::log(reference / wind.roughness) / z) * wind.steady;
+  }
+  return slope;
+}
+
 // How fast the angle of attack changes, rad/s; the gust's own rate of change is not known and left
 // out, wind that grows with height is in.
 template <class S, class T>
@@ -60,10 +73,14 @@ void state_rate(const FlightState<S>& x, const FlightInput<S>& u, const Aircraft
   if (layout.charge >= 0) rate[layout.charge] = load.current;
   if (a.stalls) {
     const S alpha_dot = alpha_rate(x, a, at, load, rate);
-    // left and right
-    for (int side = 0; side < (a.stall.split ? 2 : 1); ++side)
-      rate[layout.stall[side]] = separation_rate(a.stall, load.flow.alpha, alpha_dot,
-                                                 x[layout.stall[side]]);
+    const int halves = separation_states(a.stall);
+    for (int i = 0; i < halves; ++i) {
+      const Wing wing = halves == 1 ? Wing::whole : i == 0 ? Wing::left : Wing::right;
+      const S alpha = halves == 1 ? load.flow.alpha
+                                  : local_alpha(a.stall, load.v_air, load.w_air, wing);
+      const int place = layout.stall[i];
+      rate[place] = separation_rate(a.stall, alpha, alpha_dot, x[place], wing);
+    }
   }
   for (int i = 0; i < kControls; ++i) {
     const int place = layout.actuator[i];

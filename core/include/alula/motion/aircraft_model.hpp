@@ -48,14 +48,14 @@ StateLayout layout_of(const AircraftModel<T>& a) {
   int next = kBodyStates;
   bool electric = false;
   for (int i = 0; i < a.engines.size(); ++i) {
-    if (a.engines[i].kind == EngineKind::given) continue;
+    if (!has_state(a.engines[i].kind)) continue;
     layout.engine[i] = next++;
     electric = electric || a.engines[i].kind == EngineKind::electric;
   }
   if (electric) layout.charge = next++;
   if (a.stalls) {
     layout.stall[0] = layout.stall[1] = next++;
-    if (a.stall.split) layout.stall[1] = next++;
+    if (separation_states(a.stall) == 2) layout.stall[1] = next++;
   }
   for (int i = 0; i < kControls; ++i)
     if (a.actuated[i]) layout.actuator[i] = next++;

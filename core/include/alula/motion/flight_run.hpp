@@ -19,7 +19,7 @@ struct FlightPlan {
   const T* gusts = nullptr;               // (n, 6): ug vg wg pg qg rg, body axes
   bool hold = false;                      // inputs stay until the next sample; else straight lines
   const Dryden<T>* turbulence = nullptr;  // added to the gusts
-  const T* normals = nullptr;             // ((n - 1) substeps + 1, kDrydenNormals): standard normal
+  const T* normals = nullptr;  // ((n - 1) substeps + 1, kDrydenNormals): standard normal numbers
   const Pilot<T>* pilot = nullptr;
   const T* references = nullptr;          // (n, 10): what the pilot wants to see
   const unsigned char* active = nullptr;  // (n): whether he steers from this sample to the next

@@ -9,7 +9,7 @@ namespace alula {
 template <class S>
 struct Loads {
   Air<S> air;
-  Vec3<S> v_air;  // velocity against the air, body axes, m/s
+  Vec3<S> v_air, w_air;  // velocity (m/s) and rates (rad/s) against the air, body axes
   FlowAngles<S> flow;
   S mach;
   std::array<S, kCoefficients> coefficients;  // as the model gives them, stall included
@@ -31,12 +31,37 @@ const S& control(const FlightState<S>& x, const FlightInput<S>& u, const Aircraf
   return at < 0 ? u[static_cast<unsigned>(i)] : x[at];
 }
 
-// Adds the aerodynamic force and moment. w_air: rates against the air, body axes.
+// Adds to the coefficients what separated flow takes. sine, cosine: of the angle of attack.
+template <class S, class T>
+void add_stall(const FlightState<S>& x, const AircraftModel<T>& a, const S& sine, const S& cosine,
+               Loads<S>& out) {
+  const S &left = x[a.layout.stall[0]], &right = x[a.layout.stall[1]];
+  const StallIncrements<S> more =
+      separation_states(a.stall) == 1
+          ? stall_increments(a.stall, out.flow.alpha, left)
+          : stall_increments(a.stall, out.flow.alpha,
+                             local_alpha(a.stall, out.v_air, out.w_air, Wing::left),
+                             local_alpha(a.stall, out.v_air, out.w_air, Wing::right), left, right,
+                             a.b);
+  auto& C = out.coefficients;
+  if (a.stability_axes) {
+    C[0] += more.CD;
+    C[2] += more.CL;
+  } else {
+    C[0] += more.CL * sine - more.CD * cosine;
+    C[2] -= more.CL * cosine + more.CD * sine;
+  }
+  C[3] += more.Cl;
+  C[4] += more.Cm;
+  C[5] += more.Cn;
+}
+
+// Adds the aerodynamic force and moment.
 template <class S, class T>
 void add_aerodynamics(const FlightState<S>& x, const FlightInput<S>& u, const AircraftModel<T>& a,
-                      const Vec3<S>& w_air, Loads<S>& out) {
+                      Loads<S>& out) {
   using std::sqrt;
-  const Vec3<S>& v = out.v_air;
+  const Vec3<S>&v = out.v_air, &w = out.w_air;
   const S speed_squared = dot(v, v);
   if (!(speed_squared > S(kLeastAirspeed * kLeastAirspeed))) {
     out.flow = {S(0), S(0), S(0)};
@@ -54,9 +79,9 @@ void add_aerodynamics(const FlightState<S>& x, const FlightInput<S>& u, const Ai
   slots[kV] = out.flow.V;
   slots[kAlpha] = out.flow.alpha;
   slots[kBeta] = out.flow.beta;
-  slots[kPhat] = w_air.x * span;
-  slots[kQhat] = w_air.y * chord;
-  slots[kRhat] = w_air.z * span;
+  slots[kPhat] = w.x * span;
+  slots[kQhat] = w.y * chord;
+  slots[kRhat] = w.z * span;
   for (int i = 0; i < kControls; ++i) slots[kDe + i] = control(x, u, a, i);
   slots[kMach] = out.mach;
   fill_slots(a.table, slots, a.lookups);
@@ -66,20 +91,7 @@ void add_aerodynamics(const FlightState<S>& x, const FlightInput<S>& u, const Ai
   const S plane = sqrt(v.x * v.x + v.z * v.z);
   const bool along_y = !(plane > S(kLeastAirspeed));  // then alpha is taken as zero
   const S cosine = along_y ? S(1) : v.x / plane, sine = along_y ? S(0) : v.z / plane;
-  if (a.stalls) {
-    const auto more = stall_increments(a.stall, out.flow.alpha, x[a.layout.stall[0]],
-                                       x[a.layout.stall[1]]);
-    if (a.stability_axes) {
-      C[0] += more.CD;
-      C[2] += more.CL;
-    } else {
-      C[0] += more.CL * sine - more.CD * cosine;
-      C[2] -= more.CL * cosine + more.CD * sine;
-    }
-    C[3] += more.Cl;
-    C[4] += more.Cm;
-    C[5] += more.Cn;
-  }
+  if (a.stalls) add_stall(x, a, sine, cosine, out);
   S CX = C[0], CZ = C[2];
   if (a.stability_axes) {
     CX = C[2] * sine - C[0] * cosine;
@@ -127,8 +139,9 @@ Loads<S> loads(const FlightState<S>& x, const FlightInput<S>& u, const AircraftM
   Loads<S> out;
   out.air = standard_atmosphere(at.height);
   out.v_air = v - at.R_BN * wind_at(a.wind, at.height) - gust;
+  out.w_air = w - at.earth_rate - gust_rates;
   out.force = out.moment = {S(0), S(0), S(0)};
-  add_aerodynamics(x, u, a, w - at.earth_rate - gust_rates, out);
+  add_aerodynamics(x, u, a, out);
   add_engines(x, u, a, w, at.height, out);
   return out;
 }
