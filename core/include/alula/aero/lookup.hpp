@@ -63,7 +63,7 @@ constexpr int parabola_slope(const T* b, int n, int j, T (&weight)[3]) {
 template <class S, class T>
 constexpr Neighbors<S> neighbors(const T* b, int n, const S& x, bool cubic, bool line) {
   const int i = cell(b, n, value_of(x));
-  const bool below = value_of(x) < b[0], above = value_of(x) > b[n - 1];
+  const bool below = value_of(x)<b[0], above = value_of(x)> b[n - 1];
   const T h = b[i + 1] - b[i];
   Neighbors<S> out;
   if (!cubic || n == 2) {
@@ -75,7 +75,8 @@ constexpr Neighbors<S> neighbors(const T* b, int n, const S& x, bool cubic, bool
     out.weight[1] = part;
     return out;
   }
-  // Cubic with the values and slopes at both ends of the cell; outside, value and slope of the edge.
+  // Cubic with the values and slopes at both ends of the cell; outside, value and slope of the
+  // edge.
   S at_left, at_right, slope_left, slope_right;
   if (below || above) {
     at_left = S(below ? T(1) : T(0));

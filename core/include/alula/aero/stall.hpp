@@ -19,7 +19,7 @@ struct Stall {
   T CD_X{0};        // drag that full separation adds
   T Cm_X{0};        // pitching moment that full separation adds
   // A wing in two halves, each with its X; 0: one X for the whole wing.
-  T y_station{0};             // m from the plane of symmetry, where each half's lift acts
+  T y_station{0};              // m from the plane of symmetry, where each half's lift acts
   T alpha_star_difference{0};  // right half's alpha_star less the left one's
 };
 

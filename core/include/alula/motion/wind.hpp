@@ -10,12 +10,12 @@ namespace alula {
 // North, east, down; the way it blows to. Heights m above the same datum as the caller's.
 template <class T>
 struct Wind {
-  Vec3<T> steady{};        // m/s at the reference height (everywhere without shear and profile)
-  Vec3<T> shear{};         // m/s per m of height above the reference height
-  T reference_height{0};   // m
+  Vec3<T> steady{};          // m/s at the reference height (everywhere without shear and profile)
+  Vec3<T> shear{};           // m/s per m of height above the reference height
+  T reference_height{0};     // m
   bool logarithmic = false;  // `steady` grows with the logarithm of height above ground
-  T roughness{0.0457};     // m: 0.15 ft, 2 ft in category B (MIL-F-8785C, 3.7.3.2: 0.6096)
-  T ground{0};             // m, height of the ground
+  T roughness{0.0457};  // m: 0.15 ft near the ground, else 2 ft = 0.6096 m (MIL-F-8785C, 3.7.3.2)
+  T ground{0};          // m, height of the ground
 };
 
 // The logarithmic profile holds from 3 to 1000 ft above ground and is held outside.
@@ -31,7 +31,8 @@ Vec3<S> wind_at(const Wind<T>& wind, const S& height) {
     const T low(kLowestProfile), high(kHighestProfile);
     const T reference = limited(wind.reference_height - wind.ground, low, high);
     const S z = limited(height - wind.ground, low, high);
-    const S factor = log((T(1) / wind.roughness) * z) * (T(1) / std::log(reference / wind.roughness));
+    const S factor =
+        log((T(1) / wind.roughness) * z) * (T(1) / std::log(reference / wind.roughness));
     out = factor * wind.steady;
   }
   return out + above * wind.shear;
@@ -42,9 +43,9 @@ Vec3<S> wind_at(const Wind<T>& wind, const S& height) {
 template <class T>
 struct CosineGust {
   Vec3<T> amplitude{};
-  T start{0};    // s, when the aircraft enters
-  T length{1};   // m from zero to the full amplitude
-  T speed{1};    // m/s, airspeed at entry: distance is speed times time
+  T start{0};            // s, when the aircraft enters
+  T length{1};           // m from zero to the full amplitude
+  T speed{1};            // m/s, airspeed at entry: distance is speed times time
   bool returns = false;  // else the amplitude stays
 };
 

@@ -7,15 +7,15 @@ namespace alula {
 
 template <class T>
 struct Electric {
-  T k_V{1};                        // rad/s per V
-  T k_T{1};                        // N m per A; 1/k_V where nothing else is known
-  T no_load_current{0};            // A: what friction takes
-  T resistance{1};                 // ohm: battery, speed controller and motor together
-  T full_voltage{0};               // V, battery at rest, charged
-  T empty_voltage{0};              // V, battery at rest, empty
-  T capacity{1};                   // A s
-  T most_current{1e9};             // A, limit of the speed controller
-  T most_regenerated_current{0};   // A back through the motor; 0: it never brakes
+  T k_V{1};                       // rad/s per V
+  T k_T{1};                       // N m per A; 1/k_V where nothing else is known
+  T no_load_current{0};           // A: what friction takes
+  T resistance{1};                // ohm: battery, speed controller and motor together
+  T full_voltage{0};              // V, battery at rest, charged
+  T empty_voltage{0};             // V, battery at rest, empty
+  T capacity{1};                  // A s
+  T most_current{1e9};            // A, limit of the speed controller
+  T most_regenerated_current{0};  // A back through the motor; 0: it never brakes
 };
 
 template <class S>

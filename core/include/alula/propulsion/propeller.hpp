@@ -9,7 +9,7 @@ template <class T>
 struct Propeller {
   T diameter{1};  // m
   T inertia{0};   // kg m2 about its axis, with what turns with it one to one
-  T sense{1};     // +1: clockwise seen from behind, angular momentum along +direction; -1: other way
+  T sense{1};  // +1: clockwise seen from behind, angular momentum along +direction; -1: other way
   Curve<T> CT{}, CP{};
 };
 
