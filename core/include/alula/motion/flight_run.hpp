@@ -32,6 +32,30 @@ struct FlightRecord {
   T *states = nullptr, *outputs = nullptr, *inputs = nullptr;
 };
 
+// Turbulence around the aircraft from one integration step to the next, body axes: ug vg wg pg qg rg.
+template <class T>
+struct Eddies {
+  DrydenFilter<T> filter{};
+  DrydenState<T> state{};
+  bool started = false;
+
+  std::array<T, 6> advance(const Dryden<T>& dryden, const AircraftModel<T>& a,
+                           const FlightState<T>& x, T dt, const T* normals) {
+    const Place<T> at = place(x, a.earth, a.gravity);
+    const Vec3<T> v = Vec3<T>{x[7], x[8], x[9]} - at.R_BN * wind_at(a.wind, at.height);
+    const T V = std::sqrt(dot(v, v)), height = at.height - a.wind.ground;
+    dryden_refresh(dryden, V, height, dt, filter);
+    if (started)
+      dryden_step(filter, normals, state);
+    else
+      state = dryden_start(dryden, V, height, normals);
+    started = true;
+    const auto gust = turbulence_in_body(turbulence(filter, state), at.R_BN, v, height);
+    return {gust.velocity.x, gust.velocity.y, gust.velocity.z,
+            gust.rates.x,    gust.rates.y,    gust.rates.z};
+  }
+};
+
 // Flies from x and returns the number of samples before the state stopped being finite; all of
 // them where it never did. The pilot looks once per integration step. Turbulence is a straight
 // line between integration steps.
@@ -46,16 +70,9 @@ int fly(const AircraftModel<T>& a, FlightState<T> x, const FlightPlan<T>& plan,
     const T* gust = plan.gusts == nullptr ? nullptr : plan.gusts + static_cast<long>(sample) * 6;
     for (unsigned j = 0; j < 6; ++j) u[kGustInput + j] = gust == nullptr ? T(0) : gust[j];
   };
-  DrydenState<T> eddies{};
+  Eddies<T> eddies;
   std::array<T, 6> air{}, air_next{};
-  long normal = 0;
-  const auto stir = [&](std::array<T, 6>& out) {
-    const FlowAngles<T> flow = flow_angles(Vec3<T>{x[7], x[8], x[9]});
-    const T height = place(x, a.earth, a.gravity).height;
-    out = advance(*plan.turbulence, eddies, flow.V, height, h,
-                  plan.normals + kDrydenNormals * normal++);
-  };
-  if (plan.turbulence != nullptr) stir(air);
+  if (plan.turbulence != nullptr) air = eddies.advance(*plan.turbulence, a, x, h, plan.normals);
 
   FlightInput<T> now, next, u0, mid, u1;
   FlightState<T> k;
@@ -75,10 +92,10 @@ int fly(const AircraftModel<T>& a, FlightState<T> x, const FlightPlan<T>& plan,
         u1[j] = now[j] + end * (next[j] - now[j]);
       }
       if (plan.turbulence != nullptr) {
-        if (last)
-          air_next = air;
-        else
-          stir(air_next);
+        const long step = static_cast<long>(i) * plan.substeps + s + 1;
+        air_next = last ? air
+                        : eddies.advance(*plan.turbulence, a, x, h,
+                                         plan.normals + step * kDrydenNormals);
         for (unsigned j = 0; j < 6; ++j) {
           u0[kGustInput + j] += air[j];
           u1[kGustInput + j] += air_next[j];
