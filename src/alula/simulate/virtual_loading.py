@@ -17,6 +17,8 @@ from alula.aircraft import Aircraft, load_aircraft
 from alula.base.messages import BadInput, refuse
 from alula.simulate.virtual_plan import LoadingSpec, Plan
 
+MODEL = "truth_model.toml"  # in the folder of a virtual flight test
+
 
 @dataclass(frozen=True)
 class Loading:
@@ -64,6 +66,8 @@ def _loading(plan: Plan, spec: LoadingSpec) -> Loading:
         _change(tree, original, spec, plan)
         name = f"{path.stem}_{re.sub(r'[^A-Za-z0-9_.+-]', '_', id)}.toml"
         text = f"# {path.name}, loading '{id}' of a virtual flight test.\n" + toml_text(tree)
+    # The copy stands beside the model that flew, wherever the original has its own.
+    text = re.sub(r"(?m)^aero[ \t]*=.*$", lambda _: f'aero = "{MODEL}"', text)
     return Loading(id, _read(text, name, plan, id), spec.fuel_used, name, text)
 
 
