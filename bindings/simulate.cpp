@@ -2,6 +2,7 @@
 #include "alula/math/quaternion.hpp"
 #include "alula/motion/place.hpp"
 #include "alula/motion/tumbling.hpp"
+#include "alula/motion/wind.hpp"
 #include "alula/sensors/error_model.hpp"
 #include "alula/sensors/lever_arm.hpp"
 #include "bind.hpp"
@@ -108,6 +109,20 @@ void bind_simulate(nb::module_& m) {
       nb::arg("inertia"), nb::arg("rates"), nb::arg("dt"), nb::arg("steps"),
       "Largest relative drift, over a torque-free rotation, of energy, of the length of the\n"
       "angular momentum, and of its vector in inertial axes.");
+  m.def(
+      "cosine_gust",
+      [](Vector t, Vector amplitude, double start, double length, double speed, bool returns,
+         MatrixOut out) {
+        const std::size_t n = t.shape(0);
+        if (out.shape(0) != n || out.shape(1) < 3 || !(length > 0.0))
+          throw nb::value_error("expected a length above zero, out (n, 3 or more)");
+        const alula::CosineGust<double> gust{vec3(amplitude, "amplitude: expected three numbers"),
+                                             start, length, speed, returns};
+        for (std::size_t i = 0; i < n; ++i) put(out, i, alula::gust_at(gust, t(i)));
+      },
+      nb::arg("t"), nb::arg("amplitude"), nb::arg("start"), nb::arg("length"), nb::arg("speed"),
+      nb::arg("returns"), nb::arg("out"),
+      "A gust of one minus cosine at times t (n,), into the first three columns of out.");
   m.def(
       "specific_force_at",
       [](Matrix f, Matrix w, Matrix w_dot, Vector r, MatrixOut out) {
