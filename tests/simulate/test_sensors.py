@@ -57,3 +57,28 @@ def test_own_rate() -> None:
     for rate in (200.0, 30.0):
         with pytest.raises(BadInput, match="sensor_rate"):
             every(t, rate)
+
+
+def test_lag_follows_a_ramp_by_its_time_constant() -> None:
+    t = np.arange(0.0, 10.0, 0.02)
+    truth = np.where(t > 2.0, 3.0 * (t - 2.0), 0.0)
+    out = readings(truth, SensorError(lag=0.5), np.random.default_rng(1), t)
+    expected = np.where(t > 2.0, 3.0 * ((t - 2.0) - 0.5 * (1.0 - np.exp(-(t - 2.0) / 0.5))), 0.0)
+    np.testing.assert_allclose(out, expected, atol=1e-12)  # exact where linear between samples
+
+
+def test_lost_and_stuck_readings() -> None:
+    t = np.arange(0.0, 100.0, 0.01)
+    error = SensorError(sigma=0.1, loss=0.05, stuck=(20.0, 30.0))
+    out = readings(t, error, np.random.default_rng(2), t)
+    lost = np.isnan(out)
+    # Binomial: 10000 trials of 0.05, five sigma.
+    assert abs(lost.mean() - 0.05) < 5 * np.sqrt(0.05 * 0.95 / len(t))
+    held = out[(t >= 20.0) & (t < 30.0 - 1e-9)]
+    assert len(set(held[~np.isnan(held)])) == 1
+    assert np.nanstd(out[t < 20.0] - t[t < 20.0]) > 0.08
+
+
+def test_a_lag_without_time_is_refused() -> None:
+    with pytest.raises(BadInput, match="time stamps"):
+        readings(np.zeros(5), SensorError(lag=0.1), np.random.default_rng(1))

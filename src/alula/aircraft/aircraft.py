@@ -6,7 +6,9 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from alula.aircraft.actuators import Actuator
 from alula.aircraft.mass import MassModel, MassProperties
+from alula.aircraft.propulsion import EngineModel
 from alula.base.arrays import Array
 from alula.base.messages import Message, refuse
 
@@ -16,22 +18,6 @@ SENSOR_GROUPS: Mapping[str, tuple[str, ...]] = {
     "airdata": ("alpha", "beta", "beta_flank", "V", "V_cas", "V_ias", "mach", "qbar"),
     "gps": ("h_gps", "lat", "lon", "north", "east", "v_north", "v_east", "v_down"),
 }
-
-
-@dataclass(frozen=True)
-class Engine:
-    """One engine: where its thrust acts, (3,) m from the datum, and whereto, a unit vector (3,).
-
-    Thrust is a channel of the log or a constant, N. thrust_se: relative standard error; where it
-    is 0 the file does not state one.
-    """
-
-    name: str
-    position: Array
-    direction: Array
-    channel: str | None
-    thrust: float | None
-    thrust_se: float
 
 
 @dataclass(frozen=True)
@@ -52,7 +38,8 @@ class Aircraft:
     sensors: positions (3,) m by name. control_signs: factor from the log's sense to Alula's
     notation. control_limits: (lowest, highest) rad, or 1 for throttle, in Alula's notation.
     assumed: keys of the file whose value was not measured. All positions are in body axes from
-    the datum.
+    the datum. actuators: by control, for those that have one. aero: absolute path of the default
+    aerodynamic model's file, None where the aircraft file names none; not opened here.
     """
 
     name: str
@@ -62,7 +49,7 @@ class Aircraft:
     reference_point: Array
     mass: MassModel | None
     sensors: Mapping[str, Array]
-    engines: tuple[Engine, ...]
+    engines: tuple[EngineModel, ...]
     control_signs: Mapping[str, float]
     control_limits: Mapping[str, tuple[float, float]]
     envelope: Envelope
@@ -71,6 +58,8 @@ class Aircraft:
     path: str
     sha256: str
     messages: tuple[Message, ...] = field(default=())
+    actuators: Mapping[str, Actuator] = field(default_factory=dict)
+    aero: str | None = None
 
     def mass_properties(self, fuel_used: Array) -> MassProperties:
         """Mass (n,), CG (n, 3) and inertia (n, 3, 3) after burning `fuel_used` (n,) kg.
@@ -129,15 +118,20 @@ class Aircraft:
         for name, position in self.sensors.items():
             rows[f"Sensor {name}"] = _vector(position)
         for engine in self.engines:
-            thrust = (
-                f"thrust {engine.thrust:.5g} N"
-                if engine.channel is None
-                else f"thrust by channel '{engine.channel}'"
-            )
-            rows[f"Engine {engine.name}"] = f"{thrust}, at {_vector(engine.position)}"
+            rows[f"Engine {engine.name}"] = f"{_source(engine)}, at {_vector(engine.position)}"
         if self.assumed:
             rows["Assumed, not measured"] = ", ".join(self.assumed)
         return rows
+
+
+def _source(engine: EngineModel) -> str:
+    """Where the engine's thrust comes from, in words."""
+    made = "" if engine.machine is None else f"{engine.kind}, "
+    if engine.channel is not None:
+        return f"{made}thrust by channel '{engine.channel}'"
+    if engine.thrust is not None:
+        return f"{made}thrust {engine.thrust:.5g} N"
+    return f"{engine.kind}, simulated"
 
 
 def _vector(r: Array) -> str:

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from alula.aircraft.tanks import Tank, remaining
 from alula.base.arrays import Array, frozen
 from alula.base.messages import Message, refuse, warn
 
@@ -43,13 +44,16 @@ class MassModel:
     """The aircraft at zero fuel used, and the fuel that it will burn.
 
     mass kg, cg (3,) m from the datum, inertia (3, 3) about the CG, all with the fuel on board.
-    fuel: what is burned, part of these totals; None where mass is constant.
+    fuel: what is burned, part of these totals; None where mass is constant. tanks: where it is,
+    if the file says so; then the fuel keeps to its tanks as it burns, else all of it burns in
+    proportion.
     """
 
     mass: float
     cg: Array
     inertia: Array
     fuel: Component | None = None
+    tanks: tuple[Tank, ...] = ()
     messages: tuple[Message, ...] = field(default=())
 
     def at(self, fuel_used: Array) -> MassProperties:
@@ -67,6 +71,8 @@ class MassModel:
                 frozen(np.tile(self.inertia, (n, 1, 1))),
             )
         _check_fuel(used, self.fuel.mass)
+        if self.tanks:
+            return self._from_tanks(np.clip(used, 0.0, self.fuel.mass))
         mass = self.mass - used
         cg = (self.mass * self.cg - used[:, None] * self.fuel.position) / mass[:, None]
         inertia = (
@@ -75,6 +81,26 @@ class MassModel:
             - used[:, None, None] * point_inertia(self.fuel.position - cg)
             - (used / self.fuel.mass)[:, None, None] * self.fuel.inertia
         )
+        return MassProperties(frozen(mass), frozen(cg), frozen(inertia))
+
+    def _from_tanks(self, used: Array) -> MassProperties:
+        """The aircraft without fuel, and what is left in each tank."""
+        assert self.fuel is not None
+        dry = self.mass - self.fuel.mass
+        dry_cg = (self.mass * self.cg - self.fuel.mass * self.fuel.position) / dry
+        dry_inertia = (
+            self.inertia
+            + self.mass * point_inertia(self.cg - dry_cg)
+            - self.fuel.mass * point_inertia(self.fuel.position - dry_cg)
+            - self.fuel.inertia
+        )
+        left = remaining(self.tanks, used)
+        parts = [tank.content(fuel) for tank, fuel in zip(self.tanks, left, strict=True)]
+        mass = dry + np.sum([m for m, _, _ in parts], axis=0)
+        cg = (dry * dry_cg + sum(m[:, None] * r for m, r, _ in parts)) / mass[:, None]
+        inertia = dry_inertia + dry * point_inertia(dry_cg - cg)
+        for m, r, own in parts:
+            inertia = inertia + own + m[:, None, None] * point_inertia(r - cg)
         return MassProperties(frozen(mass), frozen(cg), frozen(inertia))
 
 

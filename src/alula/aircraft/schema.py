@@ -2,26 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Literal
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
 
-HUGE = 1e12  # beyond any aircraft in SI, and far from where squares overflow
-Positive = Annotated[float, Field(gt=0.0, le=HUGE, allow_inf_nan=False)]
-Number = Annotated[float, Field(ge=-HUGE, le=HUGE, allow_inf_nan=False)]
-Vector = Annotated[list[Number], Field(min_length=3, max_length=3)]
-Range = Annotated[list[Number], Field(min_length=2, max_length=2)]
+from alula.aircraft.schema_engines import EngineTable
+from alula.aircraft.schema_mass import Mass
+from alula.aircraft.schema_table import (
+    NotNegative,
+    Positive,
+    Range,
+    Table,
+    Vector,
+    check_order,
+)
 
-
-def _check_order(key: str, limits: list[float] | None) -> None:
-    if limits is not None and not limits[0] < limits[1]:
-        raise ValueError(f"'{key}' as [lowest, highest]|{limits}")
-
-
-class Table(BaseModel):
-    """A table that knows its keys and takes no other; numbers are numbers, not text."""
-
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+Surface = Literal["de", "da", "dr", "df", "dt"]
 
 
 class Datum(Table):
@@ -42,100 +38,10 @@ class Reference(Table):
     point: Vector | None = Field(default=None, description="moment reference, m; default the CG")
 
 
-class Inertia(Table):
-    """Inertia about the part's own CG, kg m2; products are positive integrals (Ixz: of x z dm)."""
-
-    Ixx: Number
-    Iyy: Number
-    Izz: Number
-    Ixz: Number = 0.0
-    Ixy: Number = 0.0
-    Iyz: Number = 0.0
-
-
-class Part(Table):
-    """One component of the mass."""
-
-    name: str
-    mass: Positive = Field(description="kg")
-    position: Vector = Field(description="its CG, m from the datum")
-    inertia: Inertia | None = Field(default=None, description="about its own CG; default a point")
-
-
-class Fuel(Table):
-    """The fuel on board at zero fuel used; the channel 'fuel_used' burns it."""
-
-    mass: Positive = Field(description="kg")
-    position: Vector | None = Field(default=None, description="m from the datum; default the CG")
-    inertia: Inertia | None = Field(
-        default=None, description="about its own CG; burned in proportion"
-    )
-
-
-class Mass(Table):
-    """At zero fuel used: totals that include the fuel, or components to which it is added."""
-
-    mass: Positive | None = Field(default=None, description="kg")
-    cg: Vector | None = Field(default=None, description="m from the datum")
-    Ixx: Positive | None = Field(default=None, description="kg m2, about the CG")
-    Iyy: Positive | None = None
-    Izz: Positive | None = None
-    Ixz: Number | None = Field(default=None, description="integral of x z dm, kg m2")
-    Ixy: Number | None = None
-    Iyz: Number | None = None
-    components: list[Part] = []
-    fuel: Fuel | None = None
-
-    @model_validator(mode="after")
-    def _one_way(self) -> Mass:
-        totals = ("mass", "cg", "Ixx", "Iyy", "Izz", "Ixz")
-        given = [k for k in (*totals, "Ixy", "Iyz") if getattr(self, k) is not None]
-        if self.components and given:
-            raise ValueError("totals or components, not both|components and " + ", ".join(given))
-        missing = [k for k in totals if getattr(self, k) is None]
-        if not self.components and missing:
-            raise ValueError(
-                "components, or all of mass, cg, Ixx, Iyy, Izz, Ixz|no " + ", ".join(missing)
-            )
-        return self
-
-
 class Sensor(Table):
     """Where a sensor sits."""
 
     position: Vector = Field(description="m from the datum")
-
-
-class EngineTable(Table):
-    """An engine's line of action and its thrust."""
-
-    name: str
-    position: Vector = Field(description="where the thrust acts, m from the datum")
-    direction: Vector | None = Field(
-        default=None, description="of the thrust; default along the nose"
-    )
-    tilt_deg: Number | None = Field(
-        default=None, description="thrust line's angle up from forward, deg"
-    )
-    toe_deg: Number | None = Field(
-        default=None, description="thrust line's angle to the right, deg"
-    )
-    channel: str | None = Field(default=None, description="the log's thrust channel, N")
-    thrust: Number | None = Field(default=None, description="constant thrust, N")
-    thrust_se: Annotated[float, Field(ge=0.0, allow_inf_nan=False)] = Field(
-        default=0.0, description="relative standard error of the thrust"
-    )
-
-    @model_validator(mode="after")
-    def _one_source(self) -> EngineTable:
-        if (self.channel is None) == (self.thrust is None):
-            raise ValueError("either 'channel' or 'thrust'|both or neither of them")
-        if self.direction is not None:
-            if self.tilt_deg is not None or self.toe_deg is not None:
-                raise ValueError("'direction', or 'tilt_deg' and 'toe_deg'|both")
-            if not any(self.direction):
-                raise ValueError("a direction|all zeros")
-        return self
 
 
 class Control(Table):
@@ -150,8 +56,18 @@ class Control(Table):
         if self.limits_deg is not None and self.limits is not None:
             raise ValueError("'limits_deg' or 'limits'|both")
         for key in ("limits_deg", "limits"):
-            _check_order(key, getattr(self, key))
+            check_order(key, getattr(self, key))
         return self
+
+
+class ActuatorTable(Table):
+    """What stands between the command and a control's position."""
+
+    tau: Positive = Field(description="time constant of the lag, s")
+    rate_limit_deg_s: Positive | None = Field(default=None, description="deg/s; default none")
+    rate_limit: Positive | None = Field(default=None, description="of a throttle, 1/s")
+    dead_band_deg: NotNegative | None = Field(default=None, description="full width, deg")
+    dead_band: NotNegative | None = Field(default=None, description="of a throttle, full width")
 
 
 class EnvelopeTable(Table):
@@ -165,7 +81,7 @@ class EnvelopeTable(Table):
     @model_validator(mode="after")
     def _ordered(self) -> EnvelopeTable:
         for key in ("V", "alpha_deg", "n", "h"):
-            _check_order(key, getattr(self, key))
+            check_order(key, getattr(self, key))
         return self
 
 
@@ -174,11 +90,15 @@ class AircraftFile(Table):
 
     schema_: Literal["alula.aircraft/1"] = Field(alias="schema")
     name: str
+    aero: str | None = Field(
+        default=None, description="file of the aerodynamic model, from this file's folder"
+    )
     assumed: list[str] = Field(default=[], description="dotted keys whose value was not measured")
     datum: Datum = Datum(name="center of gravity", frame="body")
     reference: Reference
     mass: Mass | None = None
-    sensors: dict[str, Sensor] = {}
-    engines: list[EngineTable] = []
-    controls: dict[str, Control] = {}
+    sensors: dict[str, Sensor] = Field(default_factory=dict)
+    engines: list[EngineTable] = Field(default_factory=list)
+    controls: dict[str, Control] = Field(default_factory=dict)
+    actuators: dict[Surface, ActuatorTable] = Field(default_factory=dict)
     envelope: EnvelopeTable = EnvelopeTable()

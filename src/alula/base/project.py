@@ -103,6 +103,11 @@ class LogSpec(Strict):
 
     id: Identifier
     path: Path = Field(strict=False)
+    aircraft: Path | None = Field(
+        default=None,
+        strict=False,
+        description="for this log only: the same aircraft, otherwise loaded",
+    )
     format: Format = "auto"
     variable: str | None = Field(
         default=None, description="matrix, structure, dataset or group inside the file"
@@ -284,8 +289,9 @@ def _resolve_paths(tree: dict[str, Any], path: Path) -> None:
         tree["aircraft"] = expand(tree["aircraft"], path, "aircraft")
     logs = tree.get("logs")
     for i, log in enumerate(logs if isinstance(logs, list) else []):
-        if isinstance(log, dict) and isinstance(log.get("path"), str):
-            log["path"] = expand(log["path"], path, f"logs[{i + 1}].path")
+        for key in ("path", "aircraft") if isinstance(log, dict) else ():
+            if isinstance(log.get(key), str):
+                log[key] = expand(log[key], path, f"logs[{i + 1}].{key}")
 
 
 def _references(project: Project, path: Path) -> list[Message]:

@@ -2,5 +2,15 @@
 
 from alula.campaign.check import Checked, check_project
 from alula.campaign.job import Job, report_of, run_project
+from alula.campaign.validate import ValidationJob, report_of_validation, run_validation
 
-__all__ = ["Checked", "Job", "check_project", "report_of", "run_project"]
+__all__ = [
+    "Checked",
+    "Job",
+    "ValidationJob",
+    "check_project",
+    "report_of",
+    "report_of_validation",
+    "run_project",
+    "run_validation",
+]

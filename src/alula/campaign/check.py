@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from alula.aircraft import Aircraft, control_sign_check, load_aircraft
 from alula.base.messages import Message, note, refuse
@@ -32,6 +35,11 @@ class Checked:
     maneuvers: tuple[Maneuver, ...]
     cards: tuple[LogCard, ...]
     messages: tuple[Message, ...]  # beyond those of the cards
+    loaded: Mapping[str, Aircraft] = field(default_factory=dict)  # logs that state their own
+
+    def aircraft_of(self, log: str) -> Aircraft:
+        """The aircraft as it was loaded in the log of that id."""
+        return self.loaded.get(log, self.aircraft)
 
     @property
     def failed(self) -> bool:
@@ -61,15 +69,8 @@ def check_project(
             found="none",
             do='Add aircraft = "my_aircraft.toml".',
         )
-    if not project.aircraft.exists():
-        raise refuse(
-            "missing_aircraft",
-            where=f"{path}: aircraft",
-            expected="the path of an aircraft file, from the project's folder",
-            found=f"no file {project.aircraft}",
-            do="Name a ready one or write one; docs/aircraft_file.md shows how.",
-        )
-    aircraft = load_aircraft(project.aircraft)
+    aircraft = _aircraft(project.aircraft, f"{path}: aircraft")
+    loaded = _loaded(project, aircraft)
     for formula in project.identify.models.values():
         parse(formula)  # said now, not after the logs were reconstructed
     progress("reading logs")
@@ -77,8 +78,58 @@ def check_project(
     found, said = maneuvers(project, flights)
     chosen = _chosen(project, found, only)
     messages = [*aircraft.messages, *said, *_signs(flights, chosen, aircraft)]
+    messages += [m for other in loaded.values() for m in other.messages]
     cards = tuple(log_card(flight, found) for flight in flights.values())
-    return Checked(project, aircraft, flights, chosen, cards, tuple(messages))
+    return Checked(project, aircraft, flights, chosen, cards, tuple(messages), loaded)
+
+
+def _aircraft(file: Path, where: str) -> Aircraft:
+    if not file.exists():
+        raise refuse(
+            "missing_aircraft",
+            where=where,
+            expected="the path of an aircraft file, from the project's folder",
+            found=f"no file {file}",
+            do="Name a ready one or write one; docs/aircraft_file.md shows how.",
+        )
+    return load_aircraft(file)
+
+
+def _loaded(project: Project, aircraft: Aircraft) -> dict[str, Aircraft]:
+    """The aircraft of the logs that name their own; it may differ in mass and thrust alone."""
+    files: dict[Path, Aircraft] = {}
+    out = {}
+    for i, log in enumerate(project.logs):
+        if log.aircraft is None:
+            continue
+        where = f"{project.path}: logs[{i + 1}].aircraft"
+        if log.aircraft not in files:
+            files[log.aircraft] = _aircraft(log.aircraft, where)
+        other = out[log.id] = files[log.aircraft]
+        differs = [
+            key
+            for key, same in (
+                ("reference", (other.S, other.b, other.c) == (aircraft.S, aircraft.b, aircraft.c)),
+                ("reference.point", np.allclose(other.reference_point, aircraft.reference_point)),
+                ("sensors", _positions(other) == _positions(aircraft)),
+                ("controls", other.control_signs == aircraft.control_signs),
+            )
+            if not same
+        ]
+        if differs:
+            raise refuse(
+                "another_aircraft",
+                where=where,
+                expected="the project's aircraft, differing in mass only",
+                found=f"other values of {', '.join(differs)}",
+                do="Derivatives are shared by one aircraft: make another project, or state "
+                "reference.point where the center of gravity differs.",
+            )
+    return out
+
+
+def _positions(aircraft: Aircraft) -> dict[str, list[float]]:
+    return {name: position.tolist() for name, position in aircraft.sensors.items()}
 
 
 def _chosen(

@@ -84,7 +84,7 @@ def run_project(
         spec = spec.model_copy(update={"filter": filter})
     progress("reconstructing the flight path")
     reconstruction = reconstruct(
-        checked.flights, checked.maneuvers, checked.aircraft, spec, progress
+        checked.flights, checked.maneuvers, checked.aircraft, spec, progress, checked.loaded
     )
     stamps.append(time.perf_counter())
     progress("identifying")
@@ -111,7 +111,11 @@ def coefficient_data(
         coefficients_as_recorded(segment.motion, reference)
         if recorded
         else _from_motion(
-            segment, checked.flights[segment.maneuver.log], aircraft, reference, shared
+            segment,
+            checked.flights[segment.maneuver.log],
+            checked.aircraft_of(segment.maneuver.log),
+            reference,
+            shared,
         )
         for segment in reconstruction.segments
     )

@@ -11,9 +11,11 @@ import typer
 from alula.base.messages import refuse
 from alula.cli.check import check
 from alula.cli.contract import Command
+from alula.cli.fly import fly
 from alula.cli.identify import identify
 from alula.cli.new import new
 from alula.cli.schema import schema
+from alula.cli.validate import validate
 
 app = typer.Typer(
     name="alula",
@@ -22,7 +24,7 @@ app = typer.Typer(
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )
-for command in (new, check, identify, schema):
+for command in (new, check, identify, fly, validate, schema):
     app.command()(command)
 
 

@@ -3,6 +3,8 @@
 from alula.model.aero_model import AXES, AeroModel, Reference, aero_model
 from alula.model.file import load_model, model_text, save_model
 from alula.model.grammar import parse, reference_scales, regressors
+from alula.model.lookup import LookupTable, lookup_table
+from alula.model.stall import Stall
 from alula.model.table import evaluate_in_core, to_table
 from alula.model.terms import COEFFICIENTS, VARIABLES, Factor, Term
 
@@ -12,11 +14,14 @@ __all__ = [
     "VARIABLES",
     "AeroModel",
     "Factor",
+    "LookupTable",
     "Reference",
+    "Stall",
     "Term",
     "aero_model",
     "evaluate_in_core",
     "load_model",
+    "lookup_table",
     "model_text",
     "parse",
     "reference_scales",

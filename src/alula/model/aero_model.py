@@ -14,6 +14,8 @@ import numpy as np
 from alula.base.arrays import Array, frozen
 from alula.base.messages import refuse
 from alula.model.grammar import parse
+from alula.model.lookup import LookupTable, check_table_name
+from alula.model.stall import STALL_KEYS, Stall, check_stall
 from alula.model.terms import Term
 
 Axes = Literal["body", "stability"]
@@ -42,8 +44,9 @@ class AeroModel:
     None where it is not known. axes: 'body' for CX CZ, 'stability' for CD CL; CY and the moments
     are about body axes in both. reference_point: (3,) m, where the moments act, in the aircraft
     file's datum frame (body axes). validity: range of each variable the values were found in (SI,
-    rad). assumed: names of parameters whose value is assumed. provenance: where the values come
-    from, in words and hashes.
+    rad). assumed: names of parameters whose value is assumed, of the stall's as 'stall.a1'.
+    provenance: where the values come from, in words and hashes. tables: what the terms look up, by
+    name. stall: what separated flow takes from the terms, which are then the attached flow's.
     """
 
     name: str
@@ -56,6 +59,8 @@ class AeroModel:
     validity: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     assumed: tuple[str, ...] = ()
     provenance: Mapping[str, str] = field(default_factory=dict)
+    tables: Mapping[str, LookupTable] = field(default_factory=dict)
+    stall: Stall | None = None
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -82,7 +87,10 @@ class AeroModel:
         return dict(zip(self.names, self.values.tolist(), strict=True))
 
     def evaluate(self, variables: Mapping[str, Array]) -> dict[str, Array]:
-        """The coefficients (n,) for variables (n,) by name; a missing variable is refused."""
+        """The coefficients (n,) for variables (n,) by name; a missing variable is refused.
+
+        With a stall they are the attached flow's.
+        """
         n = np.broadcast_shapes(*(np.shape(v) for v in variables.values()))
         out = {c: np.zeros(n) for c in AXES[self.axes]}
         for (coefficient, term), value in zip(self.terms, self.values, strict=True):
@@ -102,14 +110,21 @@ def aero_model(
     validity: Mapping[str, tuple[float, float]] | None = None,
     assumed: tuple[str, ...] = (),
     provenance: Mapping[str, str] | None = None,
+    tables: Mapping[str, LookupTable] | None = None,
+    stall: Stall | None = None,
 ) -> AeroModel:
     """An AeroModel from formulas by coefficient and values by parameter name.
 
     covariance: (k, k) in the order of `values`. Raises BadInput where a formula cannot be read, a
-    coefficient does not belong to the axes, a parameter has no finite value, or a value has no
-    parameter.
+    coefficient does not belong to the axes, a parameter has no finite value, a value has no
+    parameter, two terms share a name, or the stall's values are impossible.
     """
     where = f"aerodynamic model '{name}'"
+    tables = dict(tables or {})
+    for table in tables:
+        check_table_name(table, where)
+    if stall is not None:
+        check_stall(stall, where)
     for coefficient in formulas:
         if coefficient not in AXES[axes]:
             raise refuse(
@@ -119,8 +134,11 @@ def aero_model(
                 found=f"'{coefficient}'",
                 do="Use the coefficients of one set of axes, or state axes = 'stability'.",
             )
-    terms = tuple((c, term) for c in AXES[axes] if c in formulas for term in parse(formulas[c]))
+    terms = tuple(
+        (c, term) for c in AXES[axes] if c in formulas for term in parse(formulas[c], tables)
+    )
     names = [term.name(c) for c, term in terms]
+    _check_once(names, where)
     given = list(values)
     without = [n for n in names if n not in values or not np.isfinite(values[n])]
     if without or len(given) != len(names):
@@ -133,12 +151,13 @@ def aero_model(
             f"without a term: {', '.join(extra) or 'none'}",
             do="Give each term of the formulas its value, and each value its term.",
         )
+    known = names if stall is None else [*names, *(f"stall.{key}" for key in STALL_KEYS)]
     for label in assumed:
-        if label not in names:
+        if label not in known:
             raise refuse(
                 "unknown_parameter",
                 where=f"{where}, assumed",
-                expected=f"one of {', '.join(names)}",
+                expected=f"one of {', '.join(known)}",
                 found=f"'{label}'",
                 do="Correct the name or remove it.",
             )
@@ -161,7 +180,21 @@ def aero_model(
         validity=dict(validity or {}),
         assumed=assumed,
         provenance=dict(provenance or {}),
+        tables=tables,
+        stall=stall,
     )
+
+
+def _check_once(names: list[str], where: str) -> None:
+    twice = next((n for i, n in enumerate(names) if n in names[:i]), None)
+    if twice is not None:  # a table called 'alpha_de' beside a product alpha*de
+        raise refuse(
+            "model_values",
+            where=where,
+            expected="one name for each term",
+            found=f"two terms named '{twice}'",
+            do="Rename the table whose name reads like a product.",
+        )
 
 
 def _reordered(

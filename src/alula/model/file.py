@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import json
+from dataclasses import fields
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from alula.base.arrays import frozen
+from alula.base.arrays import Array, frozen
 from alula.base.files import write_whole
 from alula.base.messages import BadInput, refuse
 from alula.base.project_messages import explain, read_toml
 from alula.model.aero_model import AeroModel, Reference, aero_model
+from alula.model.lookup import LookupTable, lookup_table
+from alula.model.stall import Stall
 
 SCHEMA = "alula.model/1"
 
@@ -25,6 +28,32 @@ class ReferenceTable(BaseModel):
     S: float = Field(gt=0.0, description="Reference area, m2")
     b: float = Field(gt=0.0, description="Full span, m")
     c: float = Field(gt=0.0, description="Reference chord, m")
+
+
+class TableTable(BaseModel):
+    """A lookup table; see `alula.model.lookup_table`."""
+
+    model_config = ConfigDict(extra="forbid")
+    axes: dict[str, list[float]] = Field(description="Breakpoints by variable, first axis first")
+    values: list[Any] = Field(description="Nested, the last axis innermost")
+    interpolation: Literal["linear", "cubic"] = "linear"
+    outside: Literal["hold", "line"] = "hold"
+
+
+class StallTable(BaseModel):
+    """Separation of the flow; see `alula.model.Stall`."""
+
+    model_config = ConfigDict(extra="forbid")
+    a1: float = Field(description="Abruptness, 1/rad")
+    alpha_star: float = Field(description="Where half is separated, rad")
+    tau1: float = Field(description="Lag of the separation point, s")
+    tau2: float = Field(description="Delay by the rate of alpha, s")
+    CL_alpha: float = Field(description="Slope of the attached lift, 1/rad")
+    alpha_0: float = Field(description="Angle of no lift, rad")
+    CD_X: float = 0.0
+    Cm_X: float = 0.0
+    y_station: float = Field(default=0.0, description="m; above 0: each wing on its own")
+    alpha_star_difference: float = Field(default=0.0, description="Right less left, rad")
 
 
 class ModelFile(BaseModel):
@@ -44,6 +73,8 @@ class ModelFile(BaseModel):
     )
     validity: dict[str, tuple[float, float]] = Field(default_factory=dict)
     provenance: dict[str, str] = Field(default_factory=dict)
+    tables: dict[str, TableTable] = Field(default_factory=dict)
+    stall: StallTable | None = None
 
 
 def load_model(path: Path | str) -> AeroModel:
@@ -65,6 +96,13 @@ def load_model(path: Path | str) -> AeroModel:
         validity=file.validity,
         assumed=tuple(file.assumed),
         provenance=file.provenance,
+        tables={
+            name: lookup_table(
+                t.axes, t.values, t.interpolation, t.outside, where=f"{path}, tables.{name}"
+            )
+            for name, t in file.tables.items()
+        },
+        stall=None if file.stall is None else Stall(**file.stall.model_dump()),
     )
 
 
@@ -95,7 +133,28 @@ def model_text(model: AeroModel) -> str:
     if model.provenance:
         lines += ["", "[provenance]"]
         lines += [f"{_text(k)} = {_text(v)}" for k, v in model.provenance.items()]
+    if model.stall is not None:
+        lines += ["", "[stall]  # rad, s, m"]
+        lines += [f"{f.name} = {getattr(model.stall, f.name)!r}" for f in fields(model.stall)]
+    for name, table in model.tables.items():
+        lines += ["", f"[tables.{_text(name)}]", *_table_lines(table)]
     return "\n".join(lines) + "\n"
+
+
+def _table_lines(table: LookupTable) -> list[str]:
+    axes = zip(table.variables, table.breakpoints, strict=True)
+    return [
+        f"axes = {{ {', '.join(f'{n} = {_row(b)}' for n, b in axes)} }}",
+        f"interpolation = {_text(table.interpolation)}",
+        f"outside = {_text(table.outside)}",
+        f"values = {_nested(table.values)}",
+    ]
+
+
+def _nested(values: Array) -> str:
+    if values.ndim == 1:
+        return _row(values)
+    return "[\n" + "".join(f"  {_nested(v)},\n" for v in values) + "]"
 
 
 def _text(text: str) -> str:

@@ -3,10 +3,12 @@
     formula = term { "+" term }
     term    = factor { "*" factor } [ "~" number ]      ~: the size below which it does not matter
     factor  = base [ "^" whole number 1 to 9 ]
-    base    = "1" | variable | "abs" "(" variable ")" | "(" variable ("-" | "+") number ")" "+"
+    base    = "1" | variable | ("abs" | "sign") "(" variable ")"
+            | "(" variable ("-" | "+") number ")" "+" | table "(" variable { "," variable } ")"
 
-A formula names terms only; their values are what identification finds, so there are no factors
-other than 1 and no minus signs between terms. Read by a parser of its own, never by `eval`.
+A table is one of the model's, called with its own axes in their order: `cxt(alpha, de)`. A formula
+names terms only; their values are what identification finds, so there are no factors other than 1
+and no minus signs between terms. Read by a parser of its own, never by `eval`.
 """
 
 from __future__ import annotations
@@ -14,12 +16,14 @@ from __future__ import annotations
 import difflib
 import re
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from alula.base.arrays import Array
 from alula.base.messages import BadInput, refuse
+from alula.model.lookup import LookupTable
 from alula.model.terms import VARIABLES, Factor, Term, product
 
 _TOKEN = re.compile(
@@ -36,8 +40,9 @@ class _Token(NamedTuple):
 
 
 class _Parser:
-    def __init__(self, formula: str) -> None:
+    def __init__(self, formula: str, tables: Mapping[str, LookupTable]) -> None:
         self.formula = formula
+        self.tables = tables
         self.tokens: list[_Token] = []
         at = 0
         end = len(formula.rstrip())
@@ -119,10 +124,12 @@ class _Parser:
             if self.accept("^", "**"):
                 self.power_number()
             return []
-        if token.kind == "name" and token.text == "abs":
+        if token.text in ("abs", "sign"):
             self.expect("(")
-            base = Factor(self.variable(), kind="abs")
+            base = Factor(self.variable(), kind="abs" if token.text == "abs" else "sign")
             self.expect(")")
+        elif token.kind == "name" and token.text in self.tables:
+            base = self.table(token)
         elif token.kind == "name":
             base = Factor(self.known(token))
         elif token.text == "(":
@@ -139,7 +146,19 @@ class _Parser:
             raise self.unexpected("a variable, 1, abs(...) or (variable - knot)+")
         if not self.accept("^", "**"):
             return [base]
-        return [Factor(base.variable, self.power_number(), base.kind, base.knot)]
+        return [replace(base, power=self.power_number())]
+
+    def table(self, token: _Token) -> Factor:
+        lookup = self.tables[token.text]
+        call = f"{token.text}({', '.join(lookup.variables)})"
+        for i, name in enumerate(lookup.variables):
+            self.expect("," if i else "(")
+            if self.token.text != name:
+                raise self.unexpected(f"'{name}'", f"Write {call}, the table with its own axes.")
+            self.take()
+        self.expect(")")
+        first = lookup.variables[0]
+        return Factor(first, kind="table", table=token.text, lookup=lookup)
 
     def power_number(self) -> int:
         if re.fullmatch(r"[1-9]", self.token.text) is None:
@@ -159,17 +178,18 @@ class _Parser:
     def known(self, token: _Token) -> str:
         if token.text in VARIABLES:
             return token.text
-        near = difflib.get_close_matches(token.text, VARIABLES, n=1)
+        names = (*VARIABLES, *self.tables)
+        near = difflib.get_close_matches(token.text, names, n=1)
         short = {"p": "phat", "q": "qhat", "r": "rhat"}.get(token.text)
         hint = short or (near[0] if near else None)
         raise self.error(
-            "unknown_term", token.position, f"one of {', '.join(VARIABLES)}", f"'{token.text}'",
+            "unknown_term", token.position, f"one of {', '.join(names)}", f"'{token.text}'",
             f"Did you mean '{hint}'?" if hint else "Use one of the known variables.",
         )  # fmt: skip
 
 
-def parse(formula: str) -> tuple[Term, ...]:
-    """The terms of a formula, in its order.
+def parse(formula: str, tables: Mapping[str, LookupTable] | None = None) -> tuple[Term, ...]:
+    """The terms of a formula, in its order; tables: those it may call, by name.
 
     Raises BadInput that names the formula, the position and the known variables.
     """
@@ -181,7 +201,7 @@ def parse(formula: str) -> tuple[Term, ...]:
             found=f"{len(formula)} characters" if formula.strip() else "nothing",
             do="Write a formula such as '1 + alpha + qhat + de'.",
         )
-    return _Parser(formula).sum()
+    return _Parser(formula, tables or {}).sum()
 
 
 def regressors(

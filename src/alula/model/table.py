@@ -11,31 +11,43 @@ from alula.base.arrays import Array
 from alula.base.messages import refuse
 from alula.core import core
 from alula.model.aero_model import AXES, AeroModel
+from alula.model.lookup import LookupTable
 from alula.model.terms import VARIABLES, Factor
 
 MAX_STEPS = 64  # core/include/alula/aero/term_table.hpp
 MAX_TERMS = 64  # core/include/alula/math/capacity.hpp
-_MULTIPLY, _ABSOLUTE, _RAMP = 0, 1, 2
+_MULTIPLY, _ABSOLUTE, _RAMP, _SIGN, _LOOKUP = 0, 1, 2, 3, 4
+_Step = tuple[float, float, float, float, float, float]  # operation, a, b, knot, c, table
 
 
 class _Slots:
     """Hands out slots, one for each distinct product, so that nothing is computed twice."""
 
     def __init__(self) -> None:
-        self.steps: list[tuple[float, float, float, float]] = []
-        self.slot_of: dict[tuple[float, float, float, float], int] = {}
+        self.steps: list[_Step] = []
+        self.slot_of: dict[_Step, int] = {}
+        self.tables: dict[str, LookupTable] = {}  # those that are looked up, in the core's order
 
-    def step(self, operation: int, a: int, b: int = 0, knot: float = 0.0) -> int:
-        key = (float(operation), float(a), float(b), knot)
+    def step(
+        self, operation: int, a: int, b: int = 0, knot: float = 0.0, c: int = 0, table: int = 0
+    ) -> int:
+        key = (float(operation), float(a), float(b), knot, float(c), float(table))
         if key not in self.slot_of:
             self.slot_of[key] = 1 + len(VARIABLES) + len(self.steps)
             self.steps.append(key)
         return self.slot_of[key]
 
     def factor(self, factor: Factor) -> int:
-        slot = 1 + VARIABLES.index(factor.variable)
-        if factor.kind == "abs":
+        slots = [1 + VARIABLES.index(name) for name in factor.variables]
+        slot = slots[0]
+        if factor.lookup is not None:
+            self.tables.setdefault(factor.table, factor.lookup)
+            a, b, c = (*slots, 0, 0)[:3]
+            slot = self.step(_LOOKUP, a, b, c=c, table=list(self.tables).index(factor.table))
+        elif factor.kind == "abs":
             slot = self.step(_ABSOLUTE, slot)
+        elif factor.kind == "sign":
+            slot = self.step(_SIGN, slot)
         elif factor.kind == "ramp":
             slot = self.step(_RAMP, slot, knot=factor.knot)
         base = slot
@@ -67,10 +79,20 @@ def to_table(model: AeroModel) -> Any:
             found=f"{len(terms)} terms and {len(slots.steps)} products",
             do="Remove terms that do not matter.",
         )
-    return core.TermTable(
-        np.array(slots.steps, dtype=np.float64).reshape(-1, 4),
-        np.array(terms, dtype=np.float64).reshape(-1, 2),
-    )
+    tables = [
+        (
+            list(t.breakpoints),
+            np.ascontiguousarray(t.values).ravel(),
+            t.interpolation == "cubic",
+            t.outside == "line",
+        )
+        for t in slots.tables.values()
+    ]
+    steps = np.array(slots.steps, dtype=np.float64).reshape(-1, 6)
+    places_of = np.array(terms, dtype=np.float64).reshape(-1, 2)
+    if not tables:  # the last two columns are the lookups'
+        return core.TermTable(np.ascontiguousarray(steps[:, :4]), places_of)
+    return core.TermTable(steps, places_of, tables)
 
 
 def evaluate_in_core(model: AeroModel, variables: Mapping[str, Array]) -> dict[str, Array]:

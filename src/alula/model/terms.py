@@ -2,54 +2,65 @@
 
 Names: the coefficient, an underscore, and the factors in the order of `VARIABLES`. The constant is
 '0'; `phat qhat rhat` read `p q r`, as the field writes them; powers follow their factor; |beta|
-reads 'absbeta'; a spline keeps its formula. Products are joined by underscores: `Cm_0`, `Cm_q`,
-`CX_alpha2`, `CY_beta_dr`, `CY_absbeta`, `CX_(alpha-0.2)+2`.
+reads 'absbeta', the sign of beta 'signbeta'; a spline keeps its formula; a table goes last, by its
+name. Products are joined by underscores: `Cm_0`, `Cm_q`, `CX_alpha2`, `CY_beta_dr`, `CY_absbeta`,
+`CX_(alpha-0.2)+2`, `CX_cxt`, `Cm_q_cmq`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
 
 from alula.base.arrays import Array
 from alula.base.messages import refuse
+from alula.model.lookup import LookupTable
+from alula.model.variables import COEFFICIENTS, SHORT, VARIABLES
 
-# The base variables in the order of the core's slots 1 to 12; slot 0 is the constant 1.
-# V in m/s, angles in rad, rates as pb/2V, qc/2V, rb/2V, dt 0 to 1.
-VARIABLES = (
-    "V", "alpha", "beta", "phat", "qhat", "rhat", "de", "da", "dr", "df", "dt", "mach",
-)  # fmt: skip
-COEFFICIENTS = ("CX", "CY", "CZ", "Cl", "Cm", "Cn", "CD", "CL")
-_SHORT = {"phat": "p", "qhat": "q", "rhat": "r"}
+__all__ = ["COEFFICIENTS", "VARIABLES", "Factor", "Kind", "Term", "product"]
 
-Kind = Literal["plain", "abs", "ramp"]
-_KIND_ORDER: dict[Kind, int] = {"plain": 0, "abs": 1, "ramp": 2}
+Kind = Literal["plain", "abs", "sign", "ramp", "table"]
+_KIND_ORDER: dict[Kind, int] = {"plain": 0, "abs": 1, "ramp": 2, "sign": 3, "table": 4}
 
 
 @dataclass(frozen=True)
 class Factor:
-    """A power of a variable, of its absolute value, or of its ramp max(variable - knot, 0)."""
+    """A power of a variable, of its absolute value, its sign (0 at 0), its ramp
+    max(variable - knot, 0), or of a table.
+
+    variable: a table's first. table: its name; lookup: the table itself, which belongs to the
+    model, so that factors of one name are equal.
+    """
 
     variable: str
     power: int = 1
     kind: Kind = "plain"
     knot: float = 0.0
+    table: str = ""
+    lookup: LookupTable | None = field(default=None, compare=False, repr=False)
 
     @property
     def base(self) -> Factor:
         """The same factor to the first power."""
-        return Factor(self.variable, 1, self.kind, self.knot)
+        return replace(self, power=1)
+
+    @property
+    def variables(self) -> tuple[str, ...]:
+        """The variables it needs: one, or a table's, in the order of its axes."""
+        return (self.variable,) if self.lookup is None else self.lookup.variables
 
     @property
     def label(self) -> str:
         """The factor as it stands in a parameter's name."""
         power = str(self.power) if self.power > 1 else ""
-        short = _SHORT.get(self.variable, self.variable)
-        if self.kind == "abs":
-            return f"abs{short}{power}"
+        short = SHORT.get(self.variable, self.variable)
+        if self.kind == "table":
+            return self.table + power
+        if self.kind in ("abs", "sign"):
+            return f"{self.kind}{short}{power}"
         if self.kind == "ramp":
             return f"({short}{_knot(self.knot, '')})+{power}"
         return short + power
@@ -58,32 +69,42 @@ class Factor:
     def formula(self) -> str:
         """The factor as a person writes it in a formula."""
         power = f"^{self.power}" if self.power > 1 else ""
-        if self.kind == "abs":
-            return f"abs({self.variable}){power}"
+        if self.kind == "table":
+            return f"{self.table}({', '.join(self.variables)}){power}"
+        if self.kind in ("abs", "sign"):
+            return f"{self.kind}({self.variable}){power}"
         if self.kind == "ramp":
             return f"({self.variable}{_knot(self.knot, ' ')})+{power}"
         return self.variable + power
 
     def values(self, variables: Mapping[str, Array]) -> Array:
         """The factor's values; raises BadInput where its variable is missing."""
-        try:
-            x = variables[self.variable]
-        except KeyError:
-            raise refuse(
-                "missing_variable",
-                where=f"model term '{self.formula}'",
-                expected=f"values of '{self.variable}'",
-                found=", ".join(sorted(variables)) or "no variables",
-                do=f"Map the channel that gives '{self.variable}', or drop the term.",
-            ) from None
-        if self.kind == "abs":
+        given = [self._of(name, variables) for name in self.variables]
+        x = given[0]
+        if self.lookup is not None:
+            x = self.lookup.evaluate(*given)
+        elif self.kind == "abs":
             x = np.abs(x)
+        elif self.kind == "sign":
+            x = np.sign(x)
         elif self.kind == "ramp":
             x = np.maximum(x - self.knot, 0.0)
         out = x
         for _ in range(self.power - 1):  # products, as the core does it: the same rounding
             out = out * x
         return out
+
+    def _of(self, name: str, variables: Mapping[str, Array]) -> Array:
+        try:
+            return variables[name]
+        except KeyError:
+            raise refuse(
+                "missing_variable",
+                where=f"model term '{self.formula}'",
+                expected=f"values of '{name}'",
+                found=", ".join(sorted(variables)) or "no variables",
+                do=f"Map the channel that gives '{name}', or drop the term.",
+            ) from None
 
 
 @dataclass(frozen=True)
@@ -126,8 +147,12 @@ def product(factors: list[Factor], reference_scale: float | None = None) -> Term
     powers: dict[Factor, int] = {}
     for factor in factors:
         powers[factor.base] = powers.get(factor.base, 0) + factor.power
-    order = sorted(powers, key=lambda f: (VARIABLES.index(f.variable), _KIND_ORDER[f.kind], f.knot))
-    joined = tuple(Factor(f.variable, powers[f], f.kind, f.knot) for f in order)
+
+    def place(f: Factor) -> tuple[bool, int, int, float, str]:
+        kind = _KIND_ORDER[f.kind]
+        return (f.kind == "table", VARIABLES.index(f.variable), kind, f.knot, f.table)
+
+    joined = tuple(replace(f, power=powers[f]) for f in sorted(powers, key=place))
     return Term(joined, reference_scale)
 
 

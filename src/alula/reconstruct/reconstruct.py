@@ -39,14 +39,16 @@ def reconstruct(
     aircraft: Aircraft,
     spec: ReconstructSpec,
     progress: Callable[[str], None] = lambda _: None,
+    loaded: Mapping[str, Aircraft] | None = None,
 ) -> Reconstruction:
     """Reconstruct all maneuvers. flights: by log id. progress: is told what is being done.
+    loaded: by log id, where the aircraft was otherwise loaded than `aircraft` says.
 
     Raises BadInput for problems that cannot be solved; what the data leave open is marked in the
     constants (`observable`) and said in the messages.
     """
     if spec.filter == "none":
-        return _as_recorded(flights, maneuvers, aircraft, spec)
+        return _as_recorded(flights, maneuvers, aircraft, spec, loaded or {})
     groups: dict[str, list[Maneuver]] = {}
     for m in maneuvers:
         groups.setdefault({"all": "", "log": m.log, "maneuver": m.id}[spec.share], []).append(m)
@@ -71,9 +73,8 @@ def reconstruct(
         nis, readings = nis + solution.nis, readings + solution.readings
         status, converged = solution.status, converged and solution.converged
         for k, maneuver in enumerate(members):
-            segments.append(
-                _segment(problem, solution, k, flights[maneuver.log], aircraft, spec, messages)
-            )
+            flight, own = flights[maneuver.log], (loaded or {}).get(maneuver.log, aircraft)
+            segments.append(_segment(problem, solution, k, flight, own, spec, messages))
             messages += compare_duplicates(flights[maneuver.log], maneuver)
     order = {m.id: i for i, m in enumerate(maneuvers)}
     count = max(readings, 1)
@@ -96,11 +97,13 @@ def _as_recorded(
     maneuvers: Sequence[Maneuver],
     aircraft: Aircraft,
     spec: ReconstructSpec,
+    loaded: Mapping[str, Aircraft],
 ) -> Reconstruction:
     segments, messages = [], []
     for maneuver in maneuvers:
+        own = loaded.get(maneuver.log, aircraft)
         motion, said = recorded_motion(
-            flights[maneuver.log], maneuver, aircraft, spec.smoothing_window_s
+            flights[maneuver.log], maneuver, own, spec.smoothing_window_s
         )
         messages += said
         nothing = np.zeros((len(motion.t), 0))

@@ -10,6 +10,7 @@ from alula.base.messages import Message
 from alula.flight import Maneuver, SourceFile
 from alula.identify.result import Identification
 from alula.reconstruct.result import Reconstruction
+from alula.validate.result import Validation
 
 if TYPE_CHECKING:
     from alula.logs.card import LogCard
@@ -33,6 +34,7 @@ class ReportInput:
     maneuvers: tuple[Maneuver, ...] = ()
     reconstruction: Reconstruction | None = None
     identification: Identification | None = None
+    validation: Validation | None = None
     messages: tuple[Message, ...] = ()
     provenance: Mapping[str, Any] = field(default_factory=dict)
 
@@ -47,4 +49,6 @@ class ReportInput:
             found += self.reconstruction.messages
         if self.identification is not None:
             found += self.identification.messages
+        if self.validation is not None:
+            found += self.validation.messages
         return tuple(dict.fromkeys(found))

@@ -21,16 +21,21 @@ class Signal(Protocol):
 
 @dataclass(frozen=True)
 class Pulse:
-    """`amplitude` from `start` for `duration` s, zero elsewhere."""
+    """`amplitude` from `start` for `duration` s, zero elsewhere; ramp: as in `Steps`, s."""
 
     amplitude: float
     start: float
     duration: float
+    ramp: float = 0.0
+
+    @property
+    def end(self) -> float:
+        """Time at which the pulse ends, s."""
+        return self.start + self.duration
 
     def value(self, t: Array) -> Array:
         """Values (n,) at times t (n,), s."""
-        inside = (t >= self.start) & (t < self.start + self.duration)
-        return np.where(inside, self.amplitude, 0.0)
+        return Steps(self.amplitude, self.start, (self.duration,), (1.0,), self.ramp).value(t)
 
 
 @dataclass(frozen=True)
@@ -67,6 +72,66 @@ class Steps:
                 part = 0.5 - 0.5 * np.cos(np.pi * np.clip((t - edge) / self.ramp, 0.0, 1.0))
             out = out + self.amplitude * change * part
         return out
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """A sine of rising (or falling) frequency, faded in and out.
+
+    low, high: first and last frequency, Hz, over `duration` s from `start`. logarithmic: as many
+    seconds for each octave (Tischler and Remple, Aircraft and Rotorcraft System Identification,
+    2nd ed., Sec. 5.11, take such a law); else as many for each hertz. fade: time of the half
+    cosine at either end, s. Begins and, with a fade, ends at zero.
+    """
+
+    amplitude: float
+    start: float
+    duration: float
+    low: float
+    high: float
+    logarithmic: bool = False
+    fade: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not (self.duration > 0.0 and self.low > 0.0 and self.high > 0.0):
+            raise ValueError("duration and both frequencies of a sweep are above zero")
+        if not 0.0 <= 2.0 * self.fade <= self.duration:
+            raise ValueError(f"two fades of {self.fade} s do not fit into {self.duration} s")
+
+    @property
+    def end(self) -> float:
+        """Time at which the sweep ends, s."""
+        return self.start + self.duration
+
+    def cycles(self, t: Array) -> Array:
+        """Cycles done (n,) at times t (n,), s; its derivative is the frequency, Hz."""
+        part = np.clip((t - self.start) / self.duration, 0.0, 1.0)
+        if self.logarithmic and self.high != self.low:
+            ratio = np.log(self.high / self.low)
+            return np.asarray(self.low * self.duration / ratio * np.expm1(ratio * part))
+        return np.asarray(self.duration * part * (self.low + 0.5 * (self.high - self.low) * part))
+
+    def value(self, t: Array) -> Array:
+        """Values (n,) at times t (n,), s."""
+        inside = (t >= self.start) & (t <= self.end)
+        level = np.ones(np.shape(t))
+        if self.fade > 0.0:
+            edge = np.minimum(t - self.start, self.end - t) / self.fade
+            level = 0.5 - 0.5 * np.cos(np.pi * np.clip(edge, 0.0, 1.0))
+        wave = self.amplitude * level * np.sin(2.0 * np.pi * self.cycles(t))
+        return np.where(inside, wave, 0.0)
+
+
+@dataclass(frozen=True)
+class Delay:
+    """A signal that comes `delay` s later, as by a pilot's reaction or a computer."""
+
+    signal: Signal
+    delay: float
+
+    def value(self, t: Array) -> Array:
+        """Values (n,) at times t (n,), s."""
+        return self.signal.value(t - self.delay)
 
 
 @dataclass(frozen=True)

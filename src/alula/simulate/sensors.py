@@ -14,24 +14,66 @@ from alula.core import core
 
 @dataclass(frozen=True)
 class SensorError:
-    """reading = (1 + scale) truth + bias + sigma N(0, 1), rounded to multiples of step.
+    """reading = (1 + scale) delayed truth + bias + sigma N(0, 1), rounded to multiples of step.
 
-    All in the SI unit of the quantity; scale is relative; step 0 means no quantization.
+    All in the SI unit of the quantity; scale is relative (the upwash of a vane is one); step 0
+    means no quantization. lag: time constant of a first-order lag, s. loss: share of the samples
+    that never arrive, each by chance. stuck: (start, end), s, in which the reading stays as it was
+    at the start.
     """
 
     scale: float = 0.0
     bias: float = 0.0
     sigma: float = 0.0
     step: float = 0.0
+    lag: float = 0.0
+    loss: float = 0.0
+    stuck: tuple[float, float] | None = None
 
 
-def readings(truth: Array, error: SensorError, random: np.random.Generator) -> Array:
-    """Readings (n,) of a true quantity (n,), with numbers drawn from `random`."""
+def readings(
+    truth: Array, error: SensorError, random: np.random.Generator, t: Array | None = None
+) -> Array:
+    """Readings (n,) of a true quantity (n,), with numbers drawn from `random`.
+
+    t: (n,) s, evenly spaced; needed for a lag and for a time of being stuck. A sample that is
+    lost is NaN.
+    """
     truth = np.ascontiguousarray(truth, dtype=np.float64)
+    if t is None and (error.lag > 0.0 or error.stuck is not None):
+        raise refuse(
+            "sensor_without_time",
+            where="simulated sensor",
+            expected="time stamps for a lag or a stuck reading",
+            found="none",
+            do="Give t.",
+        )
+    if t is not None and error.lag > 0.0:
+        truth = lagged(t, truth, error.lag)
     out = np.empty_like(truth)
     normal = random.standard_normal(len(truth))
     core.readings(truth, normal, error.scale, error.bias, error.sigma, error.step, out)
+    if t is not None and error.stuck is not None:
+        first, last = np.searchsorted(t, error.stuck)
+        if first < len(t):
+            out[first:last] = out[first]
+    if error.loss > 0.0:
+        out[random.random(len(out)) < error.loss] = np.nan
     return out
+
+
+def lagged(t: Array, x: Array, tau: float) -> Array:
+    """x (n,) behind a first-order lag of tau s, steady at the start; t (n,) s evenly spaced.
+
+    Exact for an x that is linear between samples.
+    """
+    from scipy.signal import lfilter  # only where a sensor lags: it takes long to load
+
+    h = float(t[1] - t[0])
+    decay = np.exp(-h / tau)
+    slope = tau / h * (1.0 - decay)
+    behind = lfilter([1.0 - slope, slope - decay], [1.0, -decay], x - x[0])
+    return np.ascontiguousarray(x[0] + behind, dtype=np.float64)
 
 
 def every(t: Array, rate: float) -> Array:

@@ -1,0 +1,274 @@
+"""A project's maneuvers flown through a model: the one it identifies, or one from a file."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+import time
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from alula.base.messages import Message, note, refuse
+from alula.base.provenance import provenance
+from alula.campaign.check import Checked, Progress, check_project
+from alula.campaign.job import (
+    IDENTIFIERS,
+    NOTHING_ASKED,
+    Job,
+    _method,
+    _models,
+    coefficient_data,
+)
+from alula.flight import Flight, Maneuver
+from alula.identify import CoefficientData, identified_model
+from alula.identify.coefficients import Reference as DataReference
+from alula.identify.coefficients import regressor_variables
+from alula.model import AeroModel, Reference, load_model
+from alula.reconstruct import Segment, reconstruct
+from alula.reconstruct.transfer import engines_on
+from alula.report import ReportInput
+from alula.simulate import airframe_of
+from alula.validate import Case, Validation, validate
+from alula.validate.result import Seen
+from alula.validate.validate import DRAWS, Trim
+
+LEARNED = "learned from"  # key of a model's provenance
+_WINDOW = re.compile(r"\[([0-9a-f]{12}), (\S+) to (\S+) s\]")
+
+
+@dataclass(frozen=True)
+class ValidationJob:
+    """A finished validation. job: what led to it; its identification is empty for a model file."""
+
+    job: Job
+    model: AeroModel
+    model_sha256: str
+    validation: Validation
+
+    def all_messages(self) -> tuple[Message, ...]:
+        """The messages of every stage, each once."""
+        return tuple(dict.fromkeys([*self.job.all_messages(), *self.validation.messages]))
+
+
+def run_validation(
+    path: str,
+    *,
+    model: Path | None = None,
+    only: Sequence[str] = (),
+    filter: str | None = None,
+    trim: Trim = "none",
+    horizon: float | None = None,
+    draws: int = DRAWS,
+    seed: int | None = None,
+    progress: Progress = lambda _: None,
+) -> ValidationJob:
+    """Validate by flying. model: a file; None identifies the project's own.
+
+    only: maneuvers to fly; where the model is identified here they are held out of the estimate.
+    Without it those marked held_out are flown, and where none is, all, labeled as seen. Raises
+    BadInput for what cannot be used.
+    """
+    given = None if model is None else load_model(model)
+    stamps = [time.perf_counter()]
+    checked = _held_out(check_project(path, (), progress), only)
+    chosen = _chosen(checked, only)
+    stamps.append(time.perf_counter())
+    project = checked.project
+    spec = project.reconstruct
+    if filter is not None:
+        spec = spec.model_copy(update={"filter": filter})
+    if given is not None:  # what is not flown serves nothing
+        checked = replace(checked, maneuvers=chosen)
+    progress("reconstructing the flight path")
+    reconstruction = reconstruct(
+        checked.flights, checked.maneuvers, checked.aircraft, spec, progress, checked.loaded
+    )
+    stamps.append(time.perf_counter())
+    data = coefficient_data(checked, reconstruction, shared=spec.share == "all")
+    identification, messages = NOTHING_ASKED, tuple(_shared(spec.share, spec.filter, chosen))
+    if given is None:
+        progress("identifying")
+        models, said = _models(project, checked.maneuvers)
+        messages += said
+        identifier = IDENTIFIERS[_method(project.identify.method)]
+        identification = identifier(data, models, project.identify.options, None)
+        learned = [d for d in data if not d.maneuver.held_out]
+        given = identified_model(
+            identification,
+            project.name,
+            Reference(checked.aircraft.S, checked.aircraft.b, checked.aircraft.c),
+            data=learned,
+            reference_point=checked.aircraft.reference_point,
+            provenance={LEARNED: learned_from(learned, checked.flights)},
+        )
+        source = "identified here from " + ", ".join(d.maneuver.id for d in learned)
+        sha256 = ""
+    else:
+        assert model is not None
+        source, sha256 = str(model), hashlib.sha256(model.read_bytes()).hexdigest()
+        messages += tuple(_reference(given, checked, str(model)))
+    stamps.append(time.perf_counter())
+    cases = [
+        _case(checked, segment, item, given)
+        for segment, item in zip(reconstruction.segments, data, strict=True)
+        if segment.maneuver.id in {m.id for m in chosen}
+    ]
+    result = validate(
+        given,
+        cases,
+        gravity=spec.gravity,
+        trim=trim,
+        horizon=horizon,
+        draws=draws,
+        seed=0 if seed is None else seed,
+        source=source,
+        progress=progress,
+    )
+    stamps.append(time.perf_counter())
+    stages = ("read", "reconstruct", "identify", "fly")
+    seconds = dict(zip(stages, np.diff(stamps).tolist(), strict=True))
+    job = Job(checked, reconstruction, data, identification, seconds, messages)
+    return ValidationJob(job, given, sha256, result)
+
+
+def report_of_validation(done: ValidationJob, date: str, seed: int | None) -> ReportInput:
+    """What the report shows of a validation."""
+    job = done.job
+    checked = job.checked
+    return ReportInput(
+        name=checked.project.name,
+        path=str(checked.project.path),
+        date=date,
+        aircraft=checked.aircraft.summary(),
+        cards=checked.cards,
+        maneuvers=checked.maneuvers,
+        reconstruction=job.reconstruction,
+        identification=job.identification if job.identification.parameters else None,
+        validation=done.validation,
+        messages=(*checked.messages, *job.messages),
+        provenance={
+            **provenance(seed),
+            "project": checked.project.sha256,
+            "aircraft": checked.aircraft.sha256,
+            "model": done.validation.source,
+            **({"model_sha256": done.model_sha256} if done.model_sha256 else {}),
+            "model_origin": done.model.provenance,
+        },
+    )
+
+
+def learned_from(data: Iterable[CoefficientData], flights: Mapping[str, Flight]) -> str:
+    """The windows that a model is estimated from, by the hash of their log, for its provenance.
+
+    'elevator [1f0c5a…, 0.0 to 25.0 s]; ...': twelve digits of the SHA-256 of the log's file.
+    """
+    parts = []
+    for item in data:
+        m = item.maneuver
+        for file in flights[m.log].files:
+            parts.append(f"{m.id} [{file.sha256[:12]}, {m.start!r} to {m.end!r} s]")
+    return "; ".join(parts)
+
+
+def seen_by(model: AeroModel, maneuver: Maneuver, flight: Flight) -> Seen:
+    """Whether the model was estimated from samples of this maneuver, by its provenance.
+
+    A model that does not name its windows but the hashes of its logs has seen all of them; one
+    that names neither leaves it unknown.
+    """
+    hashes = {file.sha256 for file in flight.files}
+    if LEARNED in model.provenance:
+        for sha, start, end in _WINDOW.findall(model.provenance[LEARNED]):
+            same = any(h.startswith(sha) for h in hashes)
+            if same and float(start) < maneuver.end and float(end) > maneuver.start:
+                return "yes"
+        return "no"
+    known = {v for v in model.provenance.values() if re.fullmatch(r"[0-9a-f]{64}", v)}
+    if not known:
+        return "unknown"
+    return "yes" if hashes & known else "no"
+
+
+def _held_out(checked: Checked, only: Sequence[str]) -> Checked:
+    """The project with the maneuvers that were asked for held out of the estimate."""
+    if not only:
+        return checked
+    known = [m.id for m in checked.maneuvers]
+    for id in only:
+        if id not in known:
+            raise refuse(
+                "unknown_maneuver",
+                where="--maneuver",
+                expected="one of " + (", ".join(known) or "the project's, which has none"),
+                found=f"'{id}'",
+                do="Name a maneuver of the project file.",
+            )
+    return replace(
+        checked,
+        maneuvers=tuple(replace(m, held_out=m.held_out or m.id in only) for m in checked.maneuvers),
+    )
+
+
+def _chosen(checked: Checked, only: Sequence[str]) -> tuple[Maneuver, ...]:
+    """The maneuvers to fly."""
+    if only:
+        return tuple(m for m in checked.maneuvers if m.id in only)
+    held = tuple(m for m in checked.maneuvers if m.held_out)
+    return held or checked.maneuvers
+
+
+def _shared(share: str, filter: str, chosen: Sequence[Maneuver]) -> list[Message]:
+    """Sensor constants are estimated from validation maneuvers too; that is said."""
+    if share == "maneuver" or filter == "none":
+        return []
+    return [
+        note(
+            "sensor_constants_shared",
+            where="maneuvers " + ", ".join(m.id for m in chosen),
+            expected="nothing of the validation in the estimate",
+            found=f"reconstruct.share = '{share}': sensor biases and wind come from these "
+            "maneuvers too",
+            do="The aerodynamic model saw none of the maneuvers held out; to part the sensors' "
+            "constants as well, write share = 'maneuver'.",
+        )
+    ]
+
+
+def _reference(model: AeroModel, checked: Checked, path: str) -> list[Message]:
+    """Refuses a model of another reference geometry than the aircraft's: another aircraft."""
+    a, r = checked.aircraft, model.reference
+    if not np.allclose([r.S, r.b, r.c], [a.S, a.b, a.c], rtol=1e-3):
+        raise refuse(
+            "other_reference",
+            where=path,
+            expected=f"the aircraft's S {a.S:g} m2, b {a.b:g} m, c {a.c:g} m",
+            found=f"S {r.S:g} m2, b {r.b:g} m, c {r.c:g} m",
+            do="Take the model of this aircraft, or correct the reference geometry.",
+        )
+    return []
+
+
+def _case(checked: Checked, segment: Segment, item: CoefficientData, model: AeroModel) -> Case:
+    """What validation needs of one maneuver, from the stages before it."""
+    motion, flight = segment.motion, checked.flights[segment.maneuver.log]
+    aircraft = checked.aircraft_of(segment.maneuver.log)
+    forces = engines_on(flight, aircraft, motion.t)
+    reference = DataReference(
+        model.reference.S, model.reference.b, model.reference.c, model.reference_point
+    )
+    fuel = 0.0 if motion.fuel_used is None else float(motion.fuel_used[0])
+    given = ("V", "alpha", "beta", "p", "q", "r", "phi", "theta", "psi", "h", "ax", "ay", "az")
+    filtered = {*segment.state_names, "V", "alpha", "beta"} if segment.state_names else set()
+    return Case(
+        motion=motion,
+        airframe=airframe_of(aircraft, fuel),
+        seen=seen_by(model, segment.maneuver, flight),
+        area=aircraft.S,
+        thrust=sum(forces.values(), np.zeros(len(motion.t))) if forces else None,
+        coefficients=item.coefficients,
+        variables=regressor_variables(motion, reference),
+        missing=tuple(n for n in given if n not in flight and n not in filtered),
+    )

@@ -1,0 +1,11 @@
+"""The variables of an aerodynamic model, and the coefficients it gives."""
+
+from __future__ import annotations
+
+# The base variables in the order of the core's slots 1 to 12; slot 0 is the constant 1.
+# V in m/s, angles in rad, rates as pb/2V, qc/2V, rb/2V, dt 0 to 1.
+VARIABLES = (
+    "V", "alpha", "beta", "phat", "qhat", "rhat", "de", "da", "dr", "df", "dt", "mach",
+)  # fmt: skip
+COEFFICIENTS = ("CX", "CY", "CZ", "Cl", "Cm", "Cn", "CD", "CL")
+SHORT = {"phat": "p", "qhat": "q", "rhat": "r"}  # as they stand in a parameter's name
