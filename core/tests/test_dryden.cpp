@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <complex>
+#include <ostream>
 #include <random>
 #include <vector>
 
@@ -16,6 +17,9 @@ struct Case {
   double V, height, dt;
   alula::Dryden<double> setting;
 };
+void PrintTo(const Case& c, std::ostream* out) {
+  *out << c.V << " m/s, " << c.height << " m, " << 1 / c.dt << " Hz";
+}
 // Low and high form and between, fast and slow, small and large, 100 and 10 Hz.
 const Case kCases[] = {
     {50.0, 60.0, 0.01, {8.65, 7.7, 0.0}},    {25.0, 150.0, 0.1, {8.65, 15.0, 0.0}},
