@@ -102,7 +102,10 @@ class Verdict:
     the times after 10 s at which the average NEES lies within its 95 % bounds, over all recordings
     (`nees_pooled`) and for each; mean of it over the freedom; what was not observable, as
     'recording constant'. The errors of constants persist, so the times of one recording stand or
-    fall together: an honest filter, too, can leave the bounds of one recording for long.
+    fall together: an honest filter, too, can leave the bounds of one recording for long. How often,
+    by errors drawn from the linear filter's own joint covariance over time, 4000 blocks of 100
+    seeds: a share of 90 % is missed in one recording by 15 % of the blocks, in at least one of the
+    five by 55 %; the mean over the freedom has a deviation of 0.022 between blocks.
     """
 
     pooled: float

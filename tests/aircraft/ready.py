@@ -1,7 +1,8 @@
-"""What a ready aircraft's file promises in steady flight, by formulas of the tests' own."""
+"""What a ready aircraft's file promises, by formulas of the tests' own: nothing of the core."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq, fsolve
 
 from alula.aircraft import Aircraft, ElectricMotor, PistonEngine, Propeller, load_aircraft
+from alula.base.arrays import Array
 from alula.model import AeroModel, load_model
 
 FOLDER = Path(__file__).parents[2] / "aircraft"
@@ -92,4 +94,109 @@ def full_throttle(
     return loads(omega)[0], omega
 
 
-_ = fsolve
+@dataclass(frozen=True)
+class Steady:
+    """Level flight: speed m/s, alpha and elevator rad, thrust N along the body's x, density."""
+
+    V: float
+    alpha: float
+    de: float
+    T: float
+    rho: float
+
+
+def coefficients(model: AeroModel, values: dict[str, float]) -> dict[str, float]:
+    """All coefficients at one point; variables not given are zero."""
+    names = ("V", "alpha", "beta", "phat", "qhat", "rhat", "de", "da", "dr", "df", "dt", "mach")
+    c = {
+        k: float(x[0])
+        for k, x in model.evaluate({n: np.array([values.get(n, 0.0)]) for n in names}).items()
+    }
+    if model.axes == "body":
+        alpha = values.get("alpha", 0.0)
+        c["CL"] = c["CX"] * np.sin(alpha) - c["CZ"] * np.cos(alpha)
+        c["CD"] = -c["CX"] * np.cos(alpha) - c["CZ"] * np.sin(alpha)
+    return c
+
+
+def longitudinal_rates(
+    aircraft: Aircraft, model: AeroModel, s: Steady, x: Array, de: float | None = None
+) -> Array:
+    """Rates of V, alpha, theta, q with the thrust held, moments about the center of gravity."""
+    assert aircraft.mass is not None
+    V, alpha, theta, q = x
+    c = coefficients(
+        model,
+        {
+            "V": V,
+            "alpha": alpha,
+            "qhat": q * aircraft.c / (2 * V),
+            "de": s.de if de is None else de,
+        },
+    )
+    pressure = 0.5 * s.rho * V**2 * aircraft.S
+    m, gamma = aircraft.mass.mass, theta - alpha
+    cg = aircraft.mass.cg
+    arm = float(np.mean([e.position[2] for e in aircraft.engines])) - cg[2]
+    Z = -pressure * (c["CL"] * np.cos(alpha) + c["CD"] * np.sin(alpha))
+    X = pressure * (c["CL"] * np.sin(alpha) - c["CD"] * np.cos(alpha))
+    r = model.reference_point - cg
+    transfer = r[2] * X - r[0] * Z
+    return np.array([
+        (s.T * np.cos(alpha) - pressure * c["CD"]) / m - G * np.sin(gamma),
+        q - (s.T * np.sin(alpha) + pressure * c["CL"]) / (m * V) + G * np.cos(gamma) / V,
+        q,
+        (pressure * aircraft.c * c["Cm"] + transfer + arm * s.T) / aircraft.mass.inertia[1, 1],
+    ])  # fmt: skip
+
+
+def level(aircraft: Aircraft, model: AeroModel, V: float, rho: float) -> Steady:
+    """Level flight at V in air of density rho."""
+    assert aircraft.mass is not None
+    weight = aircraft.mass.mass * G
+
+    def balance(z: Array) -> Array:
+        s = Steady(V, float(z[0]), float(z[1]), float(z[2]) * weight, rho)
+        return longitudinal_rates(aircraft, model, s, np.array([V, z[0], z[0], 0.0]))[[0, 1, 3]]
+
+    z = fsolve(balance, [0.05, 0.0, 0.1], xtol=1e-12)
+    assert np.max(np.abs(balance(z))) < 1e-8
+    return Steady(V, float(z[0]), float(z[1]), float(z[2]) * weight, rho)
+
+
+def longitudinal_modes(aircraft: Aircraft, model: AeroModel, s: Steady) -> Array:
+    """Eigenvalues, 1/s, of V, alpha, theta, q about level flight, thrust and elevator held."""
+    x = np.array([s.V, s.alpha, s.alpha, 0.0])
+    h = 1e-5 * np.array([s.V, 1.0, 1.0, 1.0])
+    columns = [
+        (
+            longitudinal_rates(aircraft, model, s, x + d)
+            - longitudinal_rates(aircraft, model, s, x - d)
+        )
+        / (2.0 * d[i])
+        for i, d in enumerate(np.diag(h))
+    ]
+    return np.linalg.eigvals(np.column_stack(columns))
+
+
+def lateral_modes(aircraft: Aircraft, model: AeroModel, s: Steady) -> Array:
+    """Eigenvalues, 1/s, of beta, p, r, phi about level flight."""
+    assert aircraft.mass is not None
+    m, J = aircraft.mass.mass, aircraft.mass.inertia
+    pressure, span = 0.5 * s.rho * s.V**2 * aircraft.S, aircraft.b / (2.0 * s.V)
+    p = model.params
+    scale = {"beta": 1.0, "p": span, "r": span}
+    Y = {k: pressure * p.get(f"CY_{k}", 0.0) * f / (m * s.V) for k, f in scale.items()}
+    LN = np.array([
+        [pressure * aircraft.b * p.get(f"{c}_{k}", 0.0) * f for k, f in scale.items()]
+        for c in ("Cl", "Cn")
+    ])  # fmt: skip
+    turn = np.linalg.solve(J[np.ix_([0, 2], [0, 2])], LN)
+    A = np.zeros((4, 4))
+    A[0] = [
+        Y["beta"], Y["p"] + np.sin(s.alpha), Y["r"] - np.cos(s.alpha),
+        G * np.cos(s.alpha) / s.V,
+    ]  # fmt: skip
+    A[1, :3], A[2, :3] = turn
+    A[3] = [0.0, 1.0, np.tan(s.alpha), 0.0]
+    return np.linalg.eigvals(A)

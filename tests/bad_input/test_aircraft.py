@@ -94,6 +94,140 @@ def test_each_is_refused_with_its_key(
     assert any(where in m.where and words in f"{m.code} {m}" for m in messages), messages
 
 
+PROPELLER = """[engines.propeller]
+diameter = 1.7
+inertia = 0.3
+J = [0.0, 0.5, 1.0]
+CT = [0.12, 0.08, 0.0]
+CP = [0.07, 0.06, 0.02]
+"""
+PISTON = """[engines.piston]
+speed_rpm = [1000.0, 5000.0]
+torque = [60.0, 128.0]
+"""
+ELECTRIC = """[engines.electric]
+k_V_rpm = 600.0
+I_0 = 1.5
+R_motor = 0.03
+U_full = 16.8
+U_empty = 13.2
+capacity_Ah = 10.0
+I_max = 60.0
+"""
+TURBOFAN = """[engines.turbofan]
+mach = [0.0, 0.5]
+height = [0.0, 10000.0]
+idle = [[500.0, 200.0], [100.0, 50.0]]
+military = [[9000.0, 3000.0], [8000.0, 2900.0]]
+lag = 1.2
+"""
+TANK = """[[mass.tanks]]
+name = "left"
+shape = "box"
+fuel = 40.0
+density = 740.0
+center = [0.2, 0.0, 0.2]
+size = [0.5, 1.0, 0.12]
+"""
+PERSON = """[[mass.persons]]
+name = "pilot"
+mass = 80.0
+height = 1.8
+position = [0.0, -0.3, 0.0]
+"""
+MACHINES = {
+    "piston": PROPELLER + PISTON,
+    "electric": PROPELLER + ELECTRIC,
+    "turbofan": TURBOFAN,
+}
+COMPONENT = """[[mass.components]]
+name = "empty"
+mass = 300.0
+position = [0.0, 0.0, 0.0]
+inertia = {Ixx = 400.0, Iyy = 500.0, Izz = 800.0}
+"""
+
+
+def engine_file(kind: str) -> str:
+    """The good file with a machine for its engine."""
+    return GOOD.replace("thrust = 1000.0\n", f'kind = "{kind}"\n{MACHINES[kind]}')
+
+
+@pytest.mark.parametrize(
+    ("kind", "old", "new", "where", "words"),
+    [
+        ("piston", PROPELLER, "", "engines[1]", "[engines.propeller] and [engines.piston]"),
+        ("piston", 'kind = "piston"', 'kind = "steam"', "engines[1].kind", "turbofan"),
+        ("piston", 'kind = "piston"', "thrust = 1.0", "engines[1]", "no machine's table"),
+        ("piston", PISTON, PISTON + ELECTRIC, "engines[1]", "propeller, piston, electric"),
+        ("piston", "[0.0, 0.5, 1.0]", "[0.0, 1.0, 0.5]", "engines[1].propeller", "increasing"),
+        ("piston", "CT = [0.12, 0.08, 0.0]", "CT = [0.12, 0.0]", "engines[1].propeller", "2 of CT"),
+        ("piston", "CT = [0.12, 0.08, 0.0]", "CT = [0.1, nan, 0.0]", "propeller.CT[2]", "nan"),
+        ("piston", "inertia = 0.3", "inertia = 0.0", "propeller.inertia", "greater than 0"),
+        ("piston", "speed_rpm = [1000.0, 5000.0]", f"speed_rpm = {list(map(float, range(25)))}",
+         "piston.speed_rpm", "24 items"),
+        ("piston", "[60.0, 128.0]", "[60.0]", "piston.torque", "2 items"),
+        ("piston", "speed_rpm", "speed", "engines[1].piston", "speed_rpm"),
+        ("electric", "R_motor = 0.03", "R_motor = 0.0", "engines[1].electric", "resistance"),
+        ("electric", "U_empty = 13.2", "U_empty = 18.0", "engines[1].electric", "16.8 V"),
+        ("electric", "capacity_Ah = 10.0", "capacity_Ah = -1.0", "capacity_Ah", "-1"),
+        ("turbofan", "[100.0, 50.0]]", "[100.0]]", "turbofan", "2 items"),
+        ("turbofan", "mach = [0.0, 0.5]", "mach = [0.0, 0.5, 0.8]", "turbofan", "3 rows of 2"),
+        ("turbofan", "lag = 1.2", "lag = 1.2\nmilitary_at = 0.8", "turbofan", "no 'maximum'"),
+        ("turbofan", "3000.0]", "inf]", "turbofan.military[1][2]", "inf"),
+        ("turbofan", "lag = 1.2", "lag = 0.0", "turbofan.lag", "greater than 0"),
+    ],
+)  # fmt: skip
+def test_machines_are_refused_with_their_key(
+    tmp_path: Path, kind: str, old: str, new: str, where: str, words: str
+) -> None:
+    text = engine_file(kind)
+    assert old in text
+    messages = refusal(tmp_path, text.replace(old, new, 1))
+    assert any(where in m.where and words in f"{m.code} {m}" for m in messages), messages
+
+
+@pytest.mark.parametrize(
+    ("addition", "where", "words"),
+    [
+        (TANK.replace("fuel = 40.0", "fuel = 60.0"), "tanks.left", "44.4 kg"),
+        (TANK + "[mass.fuel]\nmass = 1.0\n", "mass", "'fuel' or 'tanks'"),
+        (TANK.replace("size = ", "root = "), "tanks[1]", "valid dictionary"),
+        (TANK.replace('"box"', '"wing"'), "tanks[1]", "root, tip for a wing"),
+        (TANK.replace('"box"', '"sphere"'), "tanks[1].shape", "'cylinder'"),
+        (TANK.replace("0.12]", "0.0]"), "tanks[1]", "positive length"),
+        (TANK.replace("740.0", "0.74"), "tanks[1].density", "0.74"),  # kg/l
+        (TANK + TANK, "mass", "'left' more than once"),
+        (PERSON, "mass", "persons beside components"),
+        ("[actuators.de]\ntau = 0.0\n", "actuators.de.tau", "greater than 0"),
+        ("[actuators.de]\ntau = 0.1\nrate_limit = 1.0\n", "actuators.de.rate_limit", "deg"),
+        ("[actuators.dt]\ntau = 0.1\ndead_band_deg = 1.0\n", "actuators.dt", "dead_band"),
+        ("[actuators.flap]\ntau = 0.1\n", "actuators.flap", "'de'"),
+        (TANK.replace("fuel = 40.0", "fuel = 600.0").replace("[0.5, 1.0, 0.12]", "[2.0, 2.0, 2.0]"),
+         "mass.tanks", "600 kg"),
+    ],
+)  # fmt: skip
+def test_tanks_persons_and_actuators_are_refused_with_their_key(
+    tmp_path: Path, addition: str, where: str, words: str
+) -> None:
+    messages = refusal(tmp_path, GOOD + addition)
+    assert any(where in m.where and words in f"{m.code} {m}" for m in messages), messages
+
+
+def test_persons_of_the_wrong_unit(tmp_path: Path) -> None:
+    totals = GOOD[GOOD.index("[mass]") : GOOD.index("[[engines]]")]
+    text = GOOD.replace(totals, COMPONENT).replace('["mass.Ixz"]', "[]")
+    messages = refusal(tmp_path, text + PERSON.replace("1.8", "180.0"))
+    assert any("persons[1].height" in m.where and "180" in m.found for m in messages)
+
+
+def test_negative_mass_of_a_component(tmp_path: Path) -> None:
+    totals = GOOD[GOOD.index("[mass]") : GOOD.index("[[engines]]")]
+    text = GOOD.replace(totals, COMPONENT.replace("300.0", "-300.0")).replace('["mass.Ixz"]', "[]")
+    (message,) = refusal(tmp_path, text)
+    assert "components[1].mass" in message.where
+
+
 def test_the_good_file_is_good(tmp_path: Path) -> None:
     path = tmp_path / "aircraft.toml"
     path.write_text(GOOD)
@@ -166,15 +300,30 @@ def test_more_fuel_burned_than_was_on_board(tmp_path: Path) -> None:
         load_aircraft(path).mass_properties(np.array([10.0, 120.0]))
 
 
+@pytest.mark.parametrize("kind", MACHINES)
+def test_the_good_machines_are_good(tmp_path: Path, kind: str) -> None:
+    path = tmp_path / "aircraft.toml"
+    path.write_text(engine_file(kind) + TANK)
+    aircraft = load_aircraft(path)
+    assert aircraft.messages == ()
+    assert aircraft.engines[0].kind == kind
+
+
 NUMBERS = ["0", "-1", "1e300", "1e-300", "inf", "nan", '"x"', "[]", "{}", "true", "9" * 400]
 
 
-@settings(max_examples=200, deadline=None, derandomize=True)
+@settings(max_examples=400, deadline=None, derandomize=True)
 @given(st.data())
 def test_damaged_files_are_loaded_or_refused(draw: st.DataObject) -> None:
     """Numbers replaced, lines left out, doubled or cut: an aircraft or a message, nothing else."""
     fuel = "[mass.fuel]\nmass = 50.0\n[[engines]]\ndirection = [1.0, 0.0, 0.5]"
-    lines = GOOD.replace("[[engines]]", fuel, 1).splitlines()
+    kind = draw.draw(st.sampled_from(["given", *MACHINES]))
+    if kind == "given":
+        text = GOOD.replace("[[engines]]", fuel, 1)
+    else:
+        liquid = draw.draw(st.sampled_from(["", 'liquid = "reduced"\n']))
+        text = engine_file(kind) + TANK + liquid + "[actuators.de]\ntau = 0.05\n"
+    lines = text.splitlines()
     for _ in range(draw.draw(st.integers(1, 3))):
         i = draw.draw(st.integers(0, len(lines) - 1))
         kind = draw.draw(st.sampled_from(["number", "drop", "double", "cut"]))

@@ -3,9 +3,9 @@
 Source: Santschi, DuBois and Omoto 1963, Moments of Inertia and Centers of Gravity of the Living
 Human Body, AMRL-TDR-63-36: 66 men on a compound pendulum, 75.5 kg and 1.763 m on the average,
 pendulum good to 2 to 8 %. The mean moments are scaled by m h^2, as bodies of one shape have them.
-Persons differ in shape: of three whose moments were measured singly the formula misses the two
-large ones, standing, by up to 9 %. Products of inertia, which a sitting body has a little of, are
-left out. Against the whole of an aircraft what matters is the person's mass and place.
+Persons differ in shape: standing moments of three men known singly are missed by up to 9 %.
+Products of inertia, of which a sitting body has a little, are left out. Against the whole of an
+aircraft what matters most is the person's mass and place.
 """
 
 from __future__ import annotations

@@ -266,6 +266,7 @@ def _case(checked: Checked, segment: Segment, item: CoefficientData, model: Aero
         motion=motion,
         airframe=airframe_of(aircraft, fuel),
         seen=seen_by(model, segment.maneuver, flight),
+        area=aircraft.S,
         thrust=sum(forces.values(), np.zeros(len(motion.t))) if forces else None,
         coefficients=item.coefficients,
         variables=regressor_variables(motion, reference),

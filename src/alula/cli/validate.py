@@ -208,7 +208,8 @@ def text_of(done: ValidationJob) -> str:
         for k in row.criteria:
             lines.append(
                 f"          {k.quantity}: measured {k.measured:.4g}, model {k.model:.4g}, "
-                f"off {k.deviation:+.3g} of ±{k.tolerance:.3g} {k.unit}".rstrip(" 1")
+                f"off {k.deviation:+.3g} of ±{k.tolerance:.3g}"
+                + ("" if k.unit == "1" else f" {k.unit}")
             )
         if row.reason:
             lines.append(f"          {row.reason}")

@@ -52,8 +52,10 @@ def _settle(problem: Problem, method: Literal["ekf", "ukf"]) -> tuple[Start, Sta
     stated = Start(
         np.array([u.value for u in problem.unknowns]), np.array([u.prior for u in problem.unknowns])
     )
-    multiply = np.array([u.name in WIND or u.name.startswith("k_") for u in problem.unknowns])
-    multiply &= np.array([u.walk == 0.0 for u in problem.unknowns])
+    multiply = np.array(  # of truth values, also where nothing is unknown
+        [(u.name in WIND or u.name.startswith("k_")) and u.walk == 0.0 for u in problem.unknowns],
+        dtype=bool,
+    )
     if not any(name.startswith("k_") for name in names):
         return stated, stated, True
     used, last = stated, stated.mean

@@ -18,6 +18,8 @@ from alula.report.sections.notes import messages, provenance
 from alula.report.sections.parameters import parameters
 from alula.report.sections.reconstruction import reconstruction
 from alula.report.sections.summary import header
+from alula.report.sections.validation import evidence
+from alula.report.sections.validation_flights import COLUMNS, flights
 
 _SCRIPTS = ("alula_series.js", "alula_link.js", "alula_plot.js", "report.js")
 _BUDGET = 2_300_000  # bytes of plot data, so that the page stays well under 3 MB
@@ -79,6 +81,10 @@ def render(report: ReportInput) -> str:
 def _sections(report: ReportInput, figures: FigureStore) -> list[tuple[str, str, Html]]:
     """(anchor, title, content) of each section that has something to show."""
     found: list[tuple[str, str, Html]] = []
+    if report.validation is not None:
+        found.append(("evidence", "Evidence index", evidence(report.validation)))
+        overlays = flights(report.validation, figures)
+        found.append(("flown", "Model and flight side by side", overlays))
     if report.cards:
         found.append(("log", "Log card", log_cards(report)))
     if report.maneuvers:
@@ -96,7 +102,7 @@ def _sections(report: ReportInput, figures: FigureStore) -> list[tuple[str, str,
     found.append(("messages", "Messages", messages(report)))
     found.append(("provenance", "Provenance", provenance(report)))
     for k, (key, title, content) in enumerate(found):
-        if key in ("reconstruction", "coefficients"):
+        if key in ("flown", "reconstruction", "coefficients"):
             found[k] = (key, title, join([_HOW_TO, content]))
     return found
 
@@ -137,6 +143,8 @@ def _sizes(report: ReportInput) -> list[tuple[int, int]]:
             sizes += [(len(s.t), 6) for s in segment.sensors]
     if report.identification is not None:
         sizes += [(len(s.t), 5) for s in report.identification.series]
+    if report.validation is not None:
+        sizes += [(len(one.t), COLUMNS) for one in report.validation.flown]
     return sizes
 
 

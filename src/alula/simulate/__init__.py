@@ -1,8 +1,13 @@
 """Virtual flights: the equations of motion, trim, control inputs, sensors."""
 
 from alula.simulate.airframe import Airframe, airframe_of
+from alula.simulate.condition import Condition
 from alula.simulate.fly import SimulatedFlight, fly, initial_state
+from alula.simulate.handling import judge
 from alula.simulate.inputs import Pulse, Signal, Steps, Sum, bank_to_bank, doublet, input_3211
+from alula.simulate.linearize import Linearization, LinearModel, linearize
+from alula.simulate.modes import Mode, modes_of
+from alula.simulate.requirement import Judgment
 from alula.simulate.sensors import (
     SensorError,
     every,
@@ -11,10 +16,15 @@ from alula.simulate.sensors import (
     specific_force_at,
     velocity_at,
 )
-from alula.simulate.trim import Trim, trim_level
+from alula.simulate.trim import Trim, trim, trim_level
 
 __all__ = [
     "Airframe",
+    "Condition",
+    "Judgment",
+    "LinearModel",
+    "Linearization",
+    "Mode",
     "Pulse",
     "SensorError",
     "Signal",
@@ -30,8 +40,12 @@ __all__ = [
     "fly",
     "initial_state",
     "input_3211",
+    "judge",
+    "linearize",
+    "modes_of",
     "readings",
     "specific_force_at",
+    "trim",
     "trim_level",
     "velocity_at",
 ]

@@ -18,6 +18,7 @@ OUTPUTS = (
     "ax", "ay", "az", "pdot", "qdot", "rdot", "V", "alpha", "beta", "mach", "rho",
     "C_0", "C_1", "C_2", "Cl", "Cm", "Cn",
     "FX_engine", "FY_engine", "FZ_engine", "MX_engine", "MY_engine", "MZ_engine",
+    "thrust",
 )  # fmt: skip
 
 
@@ -55,6 +56,14 @@ def plant_rates(plant: Any, x: Array, u: Array) -> tuple[Array, Array]:
     f, y = np.empty(len(x)), np.empty(len(plant_outputs(plant)))
     plant.rates(np.ascontiguousarray(x), np.ascontiguousarray(u), f, y)
     return f, y
+
+
+def settled(plant: Any, x: Array, u: Array) -> Array:
+    """The state (n,) with the further states as they come to rest in this motion."""
+    out = np.array(x, dtype=np.float64)
+    if further_states(plant):
+        plant.settle(np.ascontiguousarray(x), np.ascontiguousarray(u), out)
+    return out
 
 
 def plant_matrices(plant: Any, x: Array, u: Array) -> PlantMatrices:

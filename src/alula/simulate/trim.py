@@ -1,31 +1,123 @@
-"""Steady straight flight: the angle of attack, elevator and thrust that hold it."""
+"""Trim: the attitude, controls and power that hold a flight condition.
+
+One set of equations for all conditions: the rates of the flight states that must vanish or have a
+given value, the path, coordination, and the rate of every further state (rotor, separation point,
+actuator), solved for as many unknowns by bounded least squares with the exact Jacobian of
+`linearize`, then by Newton steps. Body rates are unknowns and the rates of the Euler angles
+equations, so that the same lines serve a flat and a turning Earth.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from math import degrees
 
 import numpy as np
-from scipy.optimize import least_squares
 
-from alula.base.arrays import Array
-from alula.base.messages import refuse
+from alula.aircraft import Envelope
+from alula.base.arrays import Array, frozen
+from alula.base.messages import Message, warn
 from alula.model import AeroModel
 from alula.simulate.airframe import GRAVITY, Airframe, core_model
-from alula.simulate.fly import initial_state
-
-_TOLERANCE = 1e-8  # m/s2 and rad/s2 (times one meter): far below any sensor
+from alula.simulate.condition import Condition, check_envelope
+from alula.simulate.coordinates import Earth, plant_state
+from alula.simulate.plant import further_states, plant_outputs
+from alula.simulate.trim_failure import failure
+from alula.simulate.trim_solver import TOLERANCE, Problem
 
 
 @dataclass(frozen=True)
 class Trim:
-    """A steady flight condition: state (13,), controls by name, angles (rad), thrust (N)."""
+    """A trimmed flight. Angles rad, rates rad/s, thrust N, throttle 0 to 1.
+
+    state: (13 + k,) of the core. controls: de da dr df dt by name; with thrust they are the inputs.
+    residual: largest rate left, m/s2 or rad/s2. gamma: climb angle against the air. further: the
+    plant's further states by name. free: the unknowns that were solved for.
+    """
 
     state: Array
     controls: dict[str, float]
     alpha: float
     theta: float
     thrust: float
-    residual: float  # largest rate left, m/s2 or rad/s2
+    residual: float
+    condition: Condition
+    beta: float = 0.0
+    phi: float = 0.0
+    gamma: float = 0.0
+    p: float = 0.0
+    q: float = 0.0
+    r: float = 0.0
+    turn_rate: float = 0.0
+    load_factor: float = 1.0  # normal: -az over standard gravity
+    further: Mapping[str, float] = field(default_factory=dict)
+    free: tuple[str, ...] = ()
+    messages: tuple[Message, ...] = ()
+
+    @property
+    def inputs(self) -> dict[str, float]:
+        """All inputs by name, as `fly` and `linearize` take them."""
+        return {**self.controls, "thrust": self.thrust}
+
+
+def trim(
+    airframe: Airframe,
+    model: AeroModel,
+    condition: Condition,
+    *,
+    limits: Mapping[str, tuple[float, float]] | None = None,
+    controls: Mapping[str, float] | None = None,
+    envelope: Envelope | None = None,
+    in_spite: bool = False,
+    wind: Array | None = None,
+    gravity: float = GRAVITY,
+) -> Trim:
+    """Trim an aircraft in a condition.
+
+    limits: (lowest, highest) of unknowns by name, rad, N, 0 to 1; default 30 deg for controls, 20
+    deg for alpha and beta. controls: inputs held, such as df; one that is held is no unknown.
+    envelope: V, h, n and alpha must lie in it; in_spite: it is a warning if they do not. Straight
+    flight keeps its wings level; a turn has no lateral specific force; without a rudder neither is
+    asked for. Raises BadInput naming the force or moment that cannot be balanced and the control at
+    its stop.
+    """
+    said = check_envelope(condition, envelope, not in_spite) if envelope else ()
+    plant = core_model(airframe, model, wind, gravity)
+    earth: Earth = getattr(airframe, "earth", "flat")
+    bounds = dict(limits or {})
+    if envelope is not None and envelope.alpha is not None and not in_spite:
+        bounds.setdefault("alpha", envelope.alpha)
+    held = dict(controls or {})
+    air = np.zeros(3) if wind is None else np.asarray(wind, dtype=np.float64)
+    problem = Problem(plant, condition, airframe, bounds, held, air, earth)
+    found = problem.solve()
+    if found.residual > TOLERANCE:
+        raise failure(condition, airframe, found, problem.solve, TOLERANCE)
+    value = dict(zip(problem.names, found.values.tolist(), strict=True))
+    outputs = dict(zip(plant_outputs(plant), found.outputs.tolist(), strict=True))
+    further = {name: value[name] for name in further_states(plant)}
+    state = plant_state(found.values[: problem.n], air, earth)
+    result = Trim(
+        state=frozen(state),
+        controls={n: value[problem.input_name(n)] for n in ("de", "da", "dr", "df", "dt")},
+        alpha=value["alpha"],
+        theta=value["theta"],
+        thrust=value["thrust"],
+        residual=found.residual,
+        condition=condition,
+        beta=value["beta"],
+        phi=value["phi"],
+        gamma=float(found.gamma),
+        p=value["p"],
+        q=value["q"],
+        r=value["r"],
+        turn_rate=float(found.rates[8]),
+        load_factor=-outputs["az"] / GRAVITY,
+        further=further,
+        free=found.equations.free,
+    )
+    return replace(result, messages=(*said, *_remarks(result, model, envelope)))
 
 
 def trim_level(
@@ -41,53 +133,44 @@ def trim_level(
     wind: Array | None = None,
     gravity: float = GRAVITY,
 ) -> Trim:
-    """Trim wings level at airspeed V (m/s), height h (m) and climb angle gamma (rad).
+    """Trim straight flight, wings level: V m/s, height h m, climb angle gamma rad.
 
-    Unknowns: alpha, de, thrust. limits: their ranges, rad, rad, N; default -20 to 20 deg, -30 to
-    30 deg, no negative thrust. controls: the others, held. Solved by bounded least squares on the
-    rates of u, w, q. Raises BadInput naming the limit that is reached where there is no such
-    flight.
+    See `trim`. controls: others than the elevator, held. limits: of alpha, de (rad), thrust (N).
     """
-    bounds = {
-        "alpha": (-0.35, 0.35),
-        "de": (-0.5236, 0.5236),
-        "thrust": (0.0, 10.0 * airframe.mass),
-        **(limits or {}),
-    }
-    names = ("alpha", "de", "thrust")
-    held = {"da": 0.0, "dr": 0.0, "df": 0.0, "dt": 0.0, **(controls or {})}
-    aircraft = core_model(airframe, model, wind, gravity)
-    dx, y = np.empty(13), np.empty(17)
-
-    def state_at(alpha: float) -> Array:
-        return initial_state(V, alpha, gamma + alpha, h, psi=psi, wind=wind)
-
-    def rates(z: Array) -> Array:
-        alpha, de, thrust = (float(s) for s in z * scale)
-        u = np.array([de, held["da"], held["dr"], held["df"], held["dt"], thrust])
-        aircraft.rates(state_at(alpha), u, dx, y)
-        return np.array([dx[7], dx[9], dx[11]])
-
-    scale = np.array([0.1, 0.1, airframe.mass])  # the unknowns in sizes near one
-    low, high = np.array([bounds[n] for n in names]).T / scale
-    start = np.clip(np.array([0.05, 0.0, 1.0 * airframe.mass]) / scale, low, high)
-    solution = least_squares(rates, start, bounds=(low, high), xtol=1e-15, ftol=1e-15, gtol=1e-15)
-    residual = float(np.max(np.abs(rates(solution.x))))
-    alpha, de, thrust = (float(s) for s in solution.x * scale)
-    if residual > _TOLERANCE:
-        at_limit = [n for n, active in zip(names, solution.active_mask, strict=True) if active]
-        raise refuse(
-            "no_trim",
-            where=f"trim at V = {V:g} m/s, h = {h:g} m",
-            expected="a steady flight within the limits",
-            found=f"rates of {residual:.2g} left; at its limit: {', '.join(at_limit) or 'nothing'}",
-            do="Choose another airspeed or height, or widen the limits.",
-        )
-    return Trim(
-        state=state_at(alpha),
-        controls={"de": de, **held},
-        alpha=alpha,
-        theta=gamma + alpha,
-        thrust=thrust,
-        residual=residual,
+    condition = Condition(V, h, "climb" if gamma else "level", gamma=gamma, psi=psi)
+    return trim(
+        airframe, model, condition, limits=limits, controls=controls, wind=wind, gravity=gravity
     )
+
+
+def _remarks(found: Trim, model: AeroModel, envelope: Envelope | None) -> list[Message]:
+    """What the trimmed flight leaves: the model's range, the envelope's load factor and alpha."""
+    where = f"trim, {found.condition.words}"
+    values = {"alpha": found.alpha, "beta": found.beta, **found.controls}
+    out = []
+    for name, (low, high) in model.validity.items():
+        value = values.get(name)
+        if value is not None and not low - 1e-12 <= value <= high + 1e-12:
+            out.append(
+                warn(
+                    "outside_validity",
+                    where=where,
+                    expected=f"{name} from {low:g} to {high:g}, where the model's values come from",
+                    found=f"{name} = {value:.4g}"
+                    + (f" rad ({degrees(value):.3g} deg)" if name != "dt" else ""),
+                    do="Trust the result as far as the model can be continued.",
+                )
+            )
+    for name, value in (("alpha", found.alpha), ("n", found.load_factor)):
+        limits = getattr(envelope, name, None)
+        if limits is not None and not limits[0] - 1e-9 <= value <= limits[1] + 1e-9:
+            out.append(
+                warn(
+                    "outside_envelope",
+                    where=where,
+                    expected=f"{name} from {limits[0]:.4g} to {limits[1]:.4g}, the envelope",
+                    found=f"{name} = {value:.4g}",
+                    do="Choose a condition inside the aircraft file's envelope.",
+                )
+            )
+    return out

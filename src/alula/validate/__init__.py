@@ -2,7 +2,7 @@
 
 from alula.validate.case import Case
 from alula.validate.oscillation import Oscillation, fit_oscillation
-from alula.validate.part60 import REGULATION, judge
+from alula.validate.part60 import REGULATION, judge, tolerances
 from alula.validate.quality import Quality, quality
 from alula.validate.result import ChannelMatch, Criterion, Evidence, Flown, Validation
 from alula.validate.validate import validate
@@ -20,5 +20,6 @@ __all__ = [
     "fit_oscillation",
     "judge",
     "quality",
+    "tolerances",
     "validate",
 ]

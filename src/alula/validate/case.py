@@ -16,15 +16,16 @@ class Case:
     """One maneuver to fly through a model.
 
     motion: as reconstructed, at the center of gravity. airframe: mass properties and line of
-    thrust at its start. thrust: (n,) N of all engines at motion.t, None for none. coefficients:
-    (n,) each as measured, by name; for coefficients that the model lacks and for offsets.
-    variables: (n,) each, the regressors as the estimate takes them. missing: channels of the
-    motion that were not recorded.
+    thrust at its start. area: m2, of the measured coefficients. thrust: (n,) N of all engines at
+    motion.t, None for none. coefficients: (n,) each as measured, by name; for coefficients that the
+    model lacks and for offsets. variables: (n,) each, the regressors as the estimate takes them.
+    missing: channels of the motion that were not recorded.
     """
 
     motion: Motion
     airframe: Airframe
     seen: Seen
+    area: float
     thrust: Array | None = None
     coefficients: Mapping[str, Array] = field(default_factory=dict)
     variables: Mapping[str, Array] = field(default_factory=dict)

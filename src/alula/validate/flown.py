@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -40,18 +40,22 @@ def fly_case(
     case: Case,
     *,
     gravity: float,
-    offsets: Mapping[str, float],
+    trim: Callable[[AeroModel], Mapping[str, float]],
     draws: int,
     seed: int,
     horizon: float | None,
 ) -> tuple[Flown, tuple[Message, ...]]:
-    """Fly one maneuver and compare; draws: parameter sets from the model's covariance.
+    """Fly one maneuver and compare.
+
+    trim: the constants to be added to a model's coefficients in this maneuver. draws: parameter
+    sets from the model's covariance, each trimmed anew.
 
     Raises BadInput where a control or coefficient that the model needs was not recorded.
     """
     maneuver = case.motion.maneuver
     where = f"maneuver {maneuver.id}"
     record = recording(case, horizon)
+    offsets = trim(model)
     complete, controls, lacking = driven(model, record, offsets, where)
     messages = list(record.messages)
     if lacking:
@@ -63,7 +67,8 @@ def fly_case(
     if departed is not None:
         messages.append(_departed(where, departed, record, columns))
     columns = {name: values[:n] for name, values in columns.items()}
-    sigma, used, lost = _spread(model, complete, flown, columns, n, draws, seed)
+    sets = _sets(model, complete, trim, draws, seed)
+    sigma, used, lost = _spread(sets, flown, columns, n)
     if lost:
         messages.append(_lost(where, lost, draws))
     follows = {c for name in lacking for c in FOLLOWS[name]}
@@ -169,34 +174,43 @@ def _until(columns: Mapping[str, Array], record: Recording) -> int:
     return max(2, int(np.argmax(stray))) if stray.any() else len(stray)
 
 
-def _spread(
+def _sets(
     model: AeroModel,
     complete: AeroModel,
-    flown: _Flight,
-    columns: Mapping[str, Array],
-    n: int,
+    trim: Callable[[AeroModel], Mapping[str, float]],
     draws: int,
     seed: int,
-) -> tuple[dict[str, Array] | None, int, int]:
-    """Standard deviation by channel over parameter sets, how many served, how many did not fly."""
-    if model.covariance is None or draws < 2 or n < 2:
-        return None, 0, 0
+) -> Iterator[AeroModel]:
+    """The model as flown with parameters drawn from their covariance; none where it has none."""
+    if model.covariance is None or draws < 2:
+        return
     values, vectors = np.linalg.eigh(model.covariance)
     root = vectors * np.sqrt(np.maximum(values, 0.0))
-    normal = np.random.default_rng(seed).standard_normal((draws, len(values)))
+    k = len(values)
+    for row in np.random.default_rng(seed).standard_normal((draws, k)):
+        changed = np.array(model.values + root @ row)
+        offsets = list(trim(replace(model, values=changed)).values())
+        driving = complete.values[k : len(complete.values) - len(offsets)]
+        yield replace(complete, values=np.concatenate([changed, driving, offsets]))
+
+
+def _spread(
+    sets: Iterator[AeroModel], flown: _Flight, columns: Mapping[str, Array], n: int
+) -> tuple[dict[str, Array] | None, int, int]:
+    """Standard deviation by channel over parameter sets, how many served, how many did not fly."""
     squares = {name: np.zeros(n) for name in UNITS}
-    used = 0
-    for row in normal:
-        changed = np.concatenate([model.values + root @ row, complete.values[len(values) :]])
-        other = flown.fly(replace(complete, values=changed), n)
+    used = lost = 0
+    for model in sets:
+        other = flown.fly(model, n)
         if len(other["V"]) < n or _until(other, flown.record) < n:
+            lost += 1
             continue
         used += 1
         for name in UNITS:
             squares[name] += (other[name] - columns[name]) ** 2
     if used < 2:
-        return None, used, draws - used
-    return {name: np.sqrt(s / used) for name, s in squares.items()}, used, draws - used
+        return None, used, lost
+    return {name: np.sqrt(s / used) for name, s in squares.items()}, used, lost
 
 
 def _outside(

@@ -29,9 +29,12 @@ FREQUENCIES, DAMPINGS = 60, (-0.1, 0.0, 0.05, 0.15, 0.3, 0.5)
 
 @dataclass(frozen=True)
 class Oscillation:
-    """period: of the damped oscillation, s. damping: ratio, negative if it grows. *_se: standard
-    errors. cycles: periods within the stretch and before the oscillation has died out. explained: by trace, the share of its variance
-    about a straight line that the oscillation explains. phase: by trace, rad, of a cosine.
+    """A damped oscillation.
+
+    period: of the damped motion, s. damping: ratio, negative if it grows. *_se: standard errors.
+    cycles: periods within the stretch and before the oscillation has died out. explained: by
+    trace, the share of its variance about a straight line that the oscillation explains. phase: by
+    trace, rad, of a cosine.
     """
 
     period: float

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from alula.base.arrays import Array
 from alula.validate.oscillation import Oscillation, fit_oscillation
 from alula.validate.result import Criterion, Evidence, Flown, Verdict
 from alula.validate.windows import find_input, free_response
@@ -75,6 +76,31 @@ def tests_of(flown: Flown) -> Sequence[Test]:
     return () if found is None else _BY_CONTROL[found.control]
 
 
+def tolerances(flown: Flown) -> dict[str, Array]:
+    """Half width (n,) of the tolerance about each judged channel, SI; NaN outside the window."""
+    out = {}
+    for test in tests_of(flown):
+        window = _response(flown)
+        for band in _BANDS.get(test.entry, ()) if window else ():
+            channel = flown.channels[band.channel]
+            if not channel.counts or window is None:
+                continue
+            half = np.maximum(
+                band.absolute, band.share * np.abs(band.factor * channel.measured)
+            ) / abs(band.factor)
+            inside = (flown.t >= window[0]) & (flown.t <= window[1])
+            out[band.channel] = np.where(inside, half, np.nan)
+    return out
+
+
+def _response(flown: Flown) -> tuple[float, float] | None:
+    """From the input's beginning to AFTER_INPUT s past its end, within the maneuver."""
+    found = find_input(flown.t, flown.controls, flown.maneuver.aspect)
+    if found is None:
+        return None
+    return found.start, min(found.end + AFTER_INPUT, flown.maneuver.end)
+
+
 def _short_period(flown: Flown, test: Test) -> list[Evidence]:
     return [
         _history(flown, test, (_PITCH, _PITCH_RATE), "±1.5° pitch angle or ±2 °/s pitch rate"),
@@ -92,11 +118,9 @@ def _rudder_response(flown: Flown, test: Test) -> list[Evidence]:
 
 def _history(flown: Flown, test: Test, bands: Sequence[_Band], tolerance: str) -> Evidence:
     """Every sample from the input's beginning to AFTER_INPUT s past its end, against a band."""
-    found = find_input(flown.t, flown.controls, flown.maneuver.aspect)
-    if found is None:
+    window = _response(flown)
+    if window is None:
         return _row(flown, test, tolerance, (), "not_judged", None, "no control surface moved")
-    end = found.end + AFTER_INPUT
-    window = (found.start, min(end, flown.maneuver.end))
     bands = [b for b in bands if flown.channels[b.channel].recorded]
     if not bands:
         return _row(flown, test, tolerance, (), "not_judged", window, "channel not recorded")
@@ -193,7 +217,7 @@ def _oscillation_rows(
         allowed = max(1.0, 0.2 * abs(first))
         rows.append(
             _decided(flown, test, words[2], window, measured.cycles, [
-                _against("time from bank to sideslip", "s", first, second, allowed, spread)
+                _against("bank to sideslip", "s", first, second, allowed, spread)
             ])
         )  # fmt: skip
     return rows
@@ -210,7 +234,7 @@ def _damping(measured: Oscillation, model: Oscillation) -> list[Criterion]:
         )
         out.append(
             _against(
-                "time to half amplitude" if halves[0] > 0 else "time to double amplitude", "s",
+                "time to half" if halves[0] > 0 else "time to double", "s",
                 abs(halves[0]), abs(halves[1]), allowed, float(relative * abs(halves[0])),
             )
         )  # fmt: skip
@@ -243,9 +267,10 @@ def _decided(
         return _row(flown, test, tolerance, criteria, "pass", window, said)
     if any(c.met is None for c in criteria):
         worst = next(c for c in criteria if c.met is None)
+        error = f"{worst.deviation_se:.2g}" + ("" if worst.unit == "1" else f" {worst.unit}")
         why = (
-            f"{said} leave a standard error of {worst.deviation_se:.2g} {worst.unit}".rstrip(" 1")
-            + " in the difference: too large for this tolerance"
+            f"{said} leave a standard error of {error} in the difference: too large for this "
+            "tolerance"
         )
         return _row(flown, test, tolerance, criteria, "not_judged", window, why)
     return _row(flown, test, tolerance, criteria, "fail", window, said)
@@ -256,10 +281,10 @@ def _unfit(found: Oscillation | None, cycles: float, whose: str, names: Sequence
     if found is None:
         return f"no oscillation is found in the free part of the {whose}"
     if found.cycles < cycles:
-        return f"{found.cycles:.1f} visible cycles of free response; {cycles:g} are needed"
+        return f"{found.cycles:.1f} visible cycles of free response; at least {cycles:g} needed"
     best = max(found.explained[n] for n in names)
     if best < LEAST_EXPLAINED:
-        return f"a damped sine explains {100 * best:.0f} % of the {whose}; 80 % are needed"
+        return f"a damped sine explains {100 * best:.0f} % of the {whose}; at least 80 % needed"
     return ""
 
 
@@ -285,6 +310,11 @@ def _row(
     )
 
 
+_BANDS: Mapping[str, Sequence[_Band]] = {
+    "2.c.10": (_PITCH, _PITCH_RATE, _NORMAL),
+    "2.d.2": (_ROLL_RATE,),
+    "2.d.6": (_YAW_RATE,),
+}
 PHUGOID = Test("2.c.9", "Phugoid dynamics", _phugoid)
 SHORT_PERIOD = Test("2.c.10", "Short period dynamics", _short_period)
 ROLL_RESPONSE = Test("2.d.2", "Roll response (rate)", _roll_response)

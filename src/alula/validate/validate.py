@@ -18,6 +18,7 @@ from alula.validate.windows import find_input
 Trim = Literal["none", "entry", "whole"]
 DRAWS = 40  # the standard deviation of a band is then known to a ninth
 LEAST_ENTRY = 10  # samples before the input that make a mean
+CLOSED = 0.2  # m/s2, mean; a fiftieth of g, above the bias of any accelerometer worth identifying
 GRAVITY = 9.80665  # m/s2, standard
 
 
@@ -63,12 +64,12 @@ def validate(
     messages: list[Message] = []
     for case in cases:
         progress(f"flying {case.motion.maneuver.id} through the model")
-        offsets, said = _offsets(model, case, trim)
+        offsets, said = _trim(model, case, trim)
         one, more = fly_case(
-            model, case, gravity=gravity, offsets=offsets, draws=draws, seed=seed, horizon=horizon
+            model, case, gravity=gravity, trim=offsets, draws=draws, seed=seed, horizon=horizon
         )
         flown.append(one)
-        messages += [*said, *more, *_label(one)]
+        messages += [*_closure(case), *said, *more, *_label(one)]
     messages += _validity(model, flown)
     return Validation(
         model=model.name,
@@ -81,10 +82,12 @@ def validate(
     )
 
 
-def _offsets(model: AeroModel, case: Case, trim: Trim) -> tuple[dict[str, float], list[Message]]:
-    """Constants that make the model's coefficients equal the measured ones in the mean."""
+def _trim(
+    model: AeroModel, case: Case, trim: Trim
+) -> tuple[Callable[[AeroModel], dict[str, float]], list[Message]]:
+    """The constants that make a model's coefficients equal the measured ones in the mean."""
     if trim == "none":
-        return {}, []
+        return _as_it_is, []
     motion = case.motion
     where = f"maneuver {motion.maneuver.id}"
     count = len(motion.t)
@@ -95,7 +98,7 @@ def _offsets(model: AeroModel, case: Case, trim: Trim) -> tuple[dict[str, float]
         words = f"the {motion.t[max(count - 1, 0)] - motion.t[0]:.3g} s before the input"
     names = [n for n in model.coefficients if n in case.coefficients]
     if count < LEAST_ENTRY or not names:
-        return {}, [
+        return _as_it_is, [
             warn(
                 "no_trim_offset",
                 where=where,
@@ -104,9 +107,13 @@ def _offsets(model: AeroModel, case: Case, trim: Trim) -> tuple[dict[str, float]
                 do="The model was flown as it is. Begin the window earlier, or use --trim whole.",
             )
         ]
-    expected = model.evaluate({n: v[:count] for n, v in case.variables.items()})
-    offsets = {n: float(np.mean(case.coefficients[n][:count] - expected[n])) for n in names}
-    listed = ", ".join(f"{n} {v:+.3g}" for n, v in offsets.items())
+    before = {n: v[:count] for n, v in case.variables.items()}
+
+    def offsets(some: AeroModel) -> dict[str, float]:
+        expected = some.evaluate(before)
+        return {n: float(np.mean(case.coefficients[n][:count] - expected[n])) for n in names}
+
+    listed = ", ".join(f"{n} {v:+.3g}" for n, v in offsets(model).items())
     return offsets, [
         note(
             "trim_offset",
@@ -114,6 +121,36 @@ def _offsets(model: AeroModel, case: Case, trim: Trim) -> tuple[dict[str, float]
             expected="the model's own constants",
             found=f"offsets from {words}, as asked for: {listed}",
             do="They were added to the model's coefficients in this maneuver.",
+        )
+    ]
+
+
+def _as_it_is(model: AeroModel) -> dict[str, float]:
+    return {}
+
+
+def _closure(case: Case) -> list[Message]:
+    """A warning where recorded coefficients and thrust do not add up to the specific force."""
+    motion, body = case.motion, ("CX", "CY", "CZ")
+    if not set(body) <= case.coefficients.keys():
+        return []
+    pressure = 0.5 * motion.rho * motion.V**2 * case.area / case.airframe.mass
+    force = np.column_stack([case.coefficients[n] for n in body]) * pressure[:, None]
+    if case.thrust is not None:
+        force += np.outer(case.thrust / case.airframe.mass, case.airframe.thrust_direction)
+    left = np.mean(np.column_stack([motion.ax, motion.ay, motion.az]) - force, axis=0)
+    k = int(np.argmax(np.abs(left)))
+    if abs(left[k]) <= CLOSED:
+        return []
+    return [
+        warn(
+            "forces_do_not_close",
+            where=f"maneuver {motion.maneuver.id}",
+            expected="coefficients times dynamic pressure plus thrust equal to mass times the "
+            "specific force",
+            found=f"{left[k]:+.3g} m/s2 missing in {'xyz'[k]} on the average",
+            do="State mass, [[engines]] with their channels and the reference area as the "
+            "recorded coefficients were made with; the flight cannot be right without.",
         )
     ]
 

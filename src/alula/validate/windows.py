@@ -9,10 +9,10 @@ import numpy as np
 
 from alula.base.arrays import Array
 
-# Share of its travel by which a control must leave its first or last position to have moved, and
-# within which it must stay to count as fixed: above a pilot's tremor, far below an input.
+# Share of the input's travel by which a surface must leave its first or last position to have
+# moved, and within which it must stay to count as fixed: above tremor and trim, far below an input.
 MOVED = 0.1
-LEAST_TRAVEL = np.radians(0.5)  # below this a control is noise and trim, not an input
+LEAST_TRAVEL = np.radians(0.5)  # below this nothing was an input
 
 ASPECT_CONTROLS: Mapping[str, tuple[str, ...]] = {
     "longitudinal": ("de",),
@@ -30,49 +30,46 @@ class Input:
     end: float
 
 
-def moving(controls: Mapping[str, Array], aspect: str) -> dict[str, Array]:
-    """The aspect's control surfaces that moved at all, (n,) rad each."""
-    return {
-        name: controls[name]
-        for name in ASPECT_CONTROLS[aspect]
-        if name in controls and np.ptp(controls[name]) > LEAST_TRAVEL
-    }
+def moving(controls: Mapping[str, Array], aspect: str) -> tuple[dict[str, Array], float]:
+    """The aspect's surfaces that moved, (n,) rad each, and the travel (rad) that counts as none."""
+    surfaces = {n: controls[n] for n in ASPECT_CONTROLS[aspect] if n in controls}
+    travel = max((float(np.ptp(u)) for u in surfaces.values()), default=0.0)
+    if travel < LEAST_TRAVEL:
+        return {}, 0.0
+    still = MOVED * travel
+    return {n: u for n, u in surfaces.items() if np.ptp(u) > still}, still
 
 
 def find_input(t: Array, controls: Mapping[str, Array], aspect: str) -> Input | None:
     """The input over times t (n,); None where no surface of the aspect moved."""
-    moved = moving(controls, aspect)
+    moved, still = moving(controls, aspect)
     if not moved:
         return None
-    first, last = len(t), 0
+    first, last = len(t) - 1, 0
     for u in moved.values():
-        least = MOVED * np.ptp(u)
-        first = min(first, int(np.argmax(np.abs(u - u[0]) > least)))
-        last = max(last, int(np.flatnonzero(np.abs(u - u[-1]) > least)[-1]))
+        begun = np.abs(u - u[0]) > still
+        ended = np.flatnonzero(np.abs(u - u[-1]) > still)
+        first = min(first, int(np.argmax(begun)) if begun.any() else len(t) - 1)
+        last = max(last, int(ended[-1]) if len(ended) else 0)
     main = max(moved, key=lambda name: float(np.ptp(moved[name])))
     return Input(main, float(t[first]), float(t[min(last + 1, len(t) - 1)]))
 
 
 def free_response(t: Array, controls: Mapping[str, Array], aspect: str) -> slice:
-    """The longest stretch, after the input began, in which every control stays where it is.
+    """The longest stretch, after the input began, in which every surface stays where it is.
 
-    Where no control moved it is the whole flight.
+    Where none moved it is the whole flight.
     """
     found = find_input(t, controls, aspect)
     if found is None:
         return slice(0, len(t))
-    moved = list(moving(controls, aspect).values())
+    moved, still = moving(controls, aspect)
+    surfaces = list(moved.values())
     begin = int(np.searchsorted(t, found.start))
     best, i = slice(begin, begin), begin
-    low = [u[begin] for u in moved]
-    high = list(low)
     for j in range(begin, len(t)):
-        low = [min(a, u[j]) for a, u in zip(low, moved, strict=True)]
-        high = [max(a, u[j]) for a, u in zip(high, moved, strict=True)]
-        while any(b - a > MOVED * np.ptp(u) for a, b, u in zip(low, high, moved, strict=True)):
+        while any(np.ptp(u[i : j + 1]) > still for u in surfaces):
             i += 1
-            low = [float(u[i : j + 1].min()) for u in moved]
-            high = [float(u[i : j + 1].max()) for u in moved]
         if j + 1 - i > best.stop - best.start:
             best = slice(i, j + 1)
     return best

@@ -18,6 +18,7 @@ struct Curve {
   std::array<T, kRoom> knot = no_knots();
   std::array<std::array<T, 4>, kMaxKnots> piece{};
   int count = 0;
+  unsigned search = 1;  // first stride of the search: a power of two, twice it is above count
 
   static constexpr std::array<T, kRoom> no_knots() {
     std::array<T, kRoom> all{};
@@ -62,6 +63,7 @@ constexpr bool make_curve(const T* x, const T* y, int n, Curve<T>& out) {
   }
   out = Curve<T>{};
   out.count = n;
+  while (2 * out.search <= static_cast<unsigned>(n)) out.search *= 2;
   for (unsigned i = 0; i <= end; ++i) {
     out.knot[i] = x[i];
     const T k = i < end ? T(1) / h[i] : T(0);
@@ -76,9 +78,8 @@ template <class S, class T>
 constexpr S curve(const Curve<T>& c, const S& x) {
   const T at = value_of(x);
   unsigned i = 0;
-  for (unsigned step = Curve<T>::kRoom / 2; step > 0; step /= 2)
-    if (c.knot[i + step] <= at) i += step;
-  if (i >= kMaxKnots) i = 0;  // an infinite argument
+  for (unsigned step = c.search; step > 0; step /= 2) i += c.knot[i + step] <= at ? step : 0u;
+  if (i >= static_cast<unsigned>(c.count)) i = 0;  // an infinite argument
   const auto& p = c.piece[i];
   if (c.count == 0) return S(0);
   const S d = x - c.knot[i];

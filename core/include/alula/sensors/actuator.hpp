@@ -10,9 +10,9 @@ namespace alula {
 template <class T>
 struct Actuator {
   T tau{0.05};      // s, lag, above 0
-  T rate_limit{0};  // per s; 0: none
+  T rate_limit{0};  // per s; 0 or infinite: none
   T low{-std::numeric_limits<T>::max()}, high{std::numeric_limits<T>::max()};
-  T dead_band{0};  // difference of command and position up to which it stands still
+  T dead_band{0};  // full width about the command within which it stands still
   T tau_down{0};   // s, lag where the position decreases; 0: tau. A speed controller's run-down.
 };
 
@@ -21,12 +21,10 @@ struct Actuator {
 template <class S, class T>
 constexpr S actuator_rate(const Actuator<T>& a, const S& position, const S& command) {
   S error = limited(command, a.low, a.high) - position;
-  if (value_of(error) > a.dead_band)
-    error -= S(a.dead_band);
-  else if (value_of(error) < -a.dead_band)
-    error += S(a.dead_band);
-  else if (a.dead_band > T(0))
-    return S(0);
+  if (a.dead_band > T(0)) {
+    const T half = T(0.5) * a.dead_band;
+    error -= limited(error, -half, half);
+  }
   const bool down = value_of(error) < T(0) && a.tau_down > T(0);
   const S rate = (T(1) / (down ? a.tau_down : a.tau)) * error;
   return a.rate_limit > T(0) ? limited(rate, -a.rate_limit, a.rate_limit) : rate;

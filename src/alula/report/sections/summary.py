@@ -11,6 +11,7 @@ from alula.report.input import ReportInput
 from alula.report.names import WORDS
 from alula.report.numbers import number
 from alula.report.pictures import mark
+from alula.report.sections.validation import reasons_of, verdict_of
 
 
 def header(report: ReportInput) -> Html:
@@ -43,6 +44,8 @@ def verdict(report: ReportInput) -> tuple[str, str]:
         return "bad", "An error was found: the result must not be used"
     if reconstruction is not None and not reconstruction.converged:
         return "bad", "The reconstruction did not converge: the result must not be used"
+    if report.validation is not None:
+        return verdict_of(report.validation)
     if identification is None or not identification.parameters:
         return _without_model(report)
     count = {"ok": 0, "weak": 0, "not_identifiable": 0}
@@ -80,6 +83,8 @@ def reasons(report: ReportInput) -> list[Html]:
     """The findings behind the verdict, one sentence each."""
     found: list[Html] = []
     identification, reconstruction = report.identification, report.reconstruction
+    if report.validation is not None:
+        found += reasons_of(report.validation)
     if identification is not None:
         found += _parameters(identification) + _fits(identification)
         if identification.status:
