@@ -185,3 +185,22 @@ def test_figures_that_make_energy_are_noticed(tmp_path: Path) -> None:
     assert message.code == "propeller_efficiency"  # J CT/CP = 0.5 * 0.08/0.03
     (message,) = load(tmp_path, HEAD + ELECTRIC + "k_T = 0.03\n").messages
     assert message.code == "motor_constants"
+
+
+@pytest.mark.parametrize("word", ["mass.persons", "mass.tanks", "piston", "electric", "turbofan",
+                                  "actuators"])  # fmt: skip
+def test_documented_examples_load(tmp_path: Path, word: str) -> None:
+    page = (Path(__file__).parents[2] / "docs" / "aircraft_file.md").read_text()
+    blocks = [block.split("```")[0] for block in page.split("```toml\n")[1:]]
+    (example,) = [
+        b for b in blocks if f"[{word}" in b or f"[engines.{word}]" in b or f"[[{word}" in b
+    ]
+    empty = """[[mass.components]]
+name = "empty"
+mass = 300.0
+position = [1.0, 0.0, 0.0]
+inertia = {Ixx = 400.0, Iyy = 500.0, Izz = 800.0}
+"""
+    assert (
+        load(tmp_path, HEAD + (empty if word.startswith("mass") else "") + example).messages == ()
+    )

@@ -196,26 +196,36 @@ def _held_out(checked: Checked, only: Sequence[str]) -> Checked:
     """The project with the maneuvers that were asked for held out of the estimate."""
     if not only:
         return checked
-    known = [m.id for m in checked.maneuvers]
+    known = {name for m in checked.maneuvers for name in _names(checked, m)}
     for id in only:
         if id not in known:
             raise refuse(
                 "unknown_maneuver",
                 where="--maneuver",
-                expected="one of " + (", ".join(known) or "the project's, which has none"),
+                expected="one of " + (", ".join(sorted(known)) or "the project's, which has none"),
                 found=f"'{id}'",
                 do="Name a maneuver of the project file.",
             )
     return replace(
         checked,
-        maneuvers=tuple(replace(m, held_out=m.held_out or m.id in only) for m in checked.maneuvers),
+        maneuvers=tuple(
+            replace(m, held_out=True) if _names(checked, m) & set(only) else m
+            for m in checked.maneuvers
+        ),
     )
+
+
+def _names(checked: Checked, maneuver: Maneuver) -> set[str]:
+    """A maneuver's own id and, where it was split at gaps, the whole one's."""
+    own = {spec.id for spec in checked.project.maneuvers}
+    whole = maneuver.id.rpartition(".")[0]
+    return {maneuver.id} | ({whole} if maneuver.id not in own and whole in own else set())
 
 
 def _chosen(checked: Checked, only: Sequence[str]) -> tuple[Maneuver, ...]:
     """The maneuvers to fly."""
     if only:
-        return tuple(m for m in checked.maneuvers if m.id in only)
+        return tuple(m for m in checked.maneuvers if _names(checked, m) & set(only))
     held = tuple(m for m in checked.maneuvers if m.held_out)
     return held or checked.maneuvers
 
@@ -271,4 +281,14 @@ def _case(checked: Checked, segment: Segment, item: CoefficientData, model: Aero
         coefficients=item.coefficients,
         variables=regressor_variables(motion, reference),
         missing=tuple(n for n in given if n not in flight and n not in filtered),
+        force=np.asarray(
+            sum(
+                (
+                    np.outer(forces[e.name], e.direction)
+                    for e in aircraft.engines
+                    if e.name in forces
+                ),
+                np.zeros((len(motion.t), 3)),
+            )
+        ),
     )

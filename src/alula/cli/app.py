@@ -13,8 +13,12 @@ from alula.cli.check import check
 from alula.cli.contract import Command
 from alula.cli.fly import fly
 from alula.cli.identify import identify
+from alula.cli.linearize import linearize
+from alula.cli.modes import modes
 from alula.cli.new import new
+from alula.cli.plan import plan
 from alula.cli.schema import schema
+from alula.cli.trim import trim
 from alula.cli.validate import validate
 
 app = typer.Typer(
@@ -24,7 +28,7 @@ app = typer.Typer(
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )
-for command in (new, check, identify, fly, validate, schema):
+for command in (new, check, identify, plan, fly, trim, linearize, modes, validate, schema):
     app.command()(command)
 
 

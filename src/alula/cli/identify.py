@@ -225,18 +225,21 @@ def _write_report(job: Job, path: Path, command: Command) -> None:
 
 def _write_model(job: Job, path: Path, command: Command) -> None:
     from alula.base.provenance import provenance
+    from alula.campaign.validate import LEARNED, learned_from
     from alula.identify import identified_model
     from alula.model import Reference, save_model
 
     aircraft = job.checked.aircraft
+    learned = [d for d in job.data if not d.maneuver.held_out]
     made = identified_model(
         job.identification,
         job.checked.project.name,
         Reference(aircraft.S, aircraft.b, aircraft.c),
-        data=job.data,
+        data=learned,
         reference_point=aircraft.reference_point,
         provenance={
             **{f.path: f.sha256 for card in job.checked.cards for f in card.files},
+            LEARNED: learned_from(learned, job.checked.flights),
             "alula": provenance(command.seed)["alula"],
         },
     )

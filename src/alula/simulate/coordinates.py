@@ -86,6 +86,33 @@ def flight_state(state: Array, wind: Array, earth: Earth = "flat") -> Array:
 
     Raises BadInput where there is none: without airspeed, or with the nose straight up or down.
     """
+    euler, place = _attitude_and_place(state, earth)
+    R = _turn_matrices(euler)
+    u, v, ww = state[7:10] - R[0] @ R[1] @ R[2] @ wind
+    V = float(np.sqrt(u * u + v * v + ww * ww))
+    plane = float(np.hypot(u, ww))
+    if abs(np.cos(euler[1])) < 1e-5 or plane < 1e-3:
+        raise refuse(
+            "no_flight_angles",
+            where="flight state",
+            expected="an airspeed in the plane of symmetry, and a nose that is not straight up or "
+            "down",
+            found=f"V = {V:.3g} m/s, theta = {np.degrees(euler[1]):.6g} deg",
+            do="Use the matrices in the plant's own states there.",
+        )
+    flow = [V, np.arctan2(ww, u), np.arcsin(v / V)]
+    return np.concatenate([flow, state[10:13], euler, place, state[BODY_STATES:]])
+
+
+def wind_from(state: Array, air_velocity: Array, earth: Earth = "flat") -> Array:
+    """The wind (3,) m/s, NED, for which a plant state has this air velocity (3,), body axes."""
+    euler, _ = _attitude_and_place(state, earth)
+    R = _turn_matrices(euler)
+    return np.asarray((R[0] @ R[1] @ R[2]).T @ (state[7:10] - air_velocity))
+
+
+def _attitude_and_place(state: Array, earth: Earth) -> tuple[Array, Array]:
+    """phi, theta, psi against north, east, down; north, east, h or latitude, longitude, h."""
     w, i, j, k = state[3:7] / np.linalg.norm(state[3:7])
     if earth == "wgs84":
         lat, lon, h = _geodetic(state[:3])
@@ -102,21 +129,7 @@ def flight_state(state: Array, wind: Array, earth: Earth = "flat") -> Array:
             np.arctan2(2.0 * (w * k + i * j), 1.0 - 2.0 * (j * j + k * k)),
         ]
     )
-    R = _turn_matrices(euler)
-    u, v, ww = state[7:10] - R[0] @ R[1] @ R[2] @ wind
-    V = float(np.sqrt(u * u + v * v + ww * ww))
-    plane = float(np.hypot(u, ww))
-    if abs(sine) > 1.0 - 1e-10 or plane < 1e-3:
-        raise refuse(
-            "no_flight_angles",
-            where="flight state",
-            expected="an airspeed in the plane of symmetry, and a nose that is not straight up or "
-            "down",
-            found=f"V = {V:.3g} m/s, theta = {np.degrees(euler[1]):.6g} deg",
-            do="Use the matrices in the plant's own states there.",
-        )
-    flow = [V, np.arctan2(ww, u), np.arcsin(v / V)]
-    return np.concatenate([flow, state[10:13], euler, place, state[BODY_STATES:]])
+    return euler, place
 
 
 def _air(x: Any) -> Any:

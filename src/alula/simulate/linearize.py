@@ -24,6 +24,7 @@ from alula.simulate.plant import (
     plant_inputs,
     plant_matrices,
     plant_outputs,
+    wind_at,
 )
 
 # Dittrich 2016, Eq. (2.78), and its counterpart for Eq. (2.68); h and psi may be added.
@@ -125,19 +126,18 @@ def linearize(
     x: Array,
     u: Array | Mapping[str, float],
     *,
-    wind: Array | None = None,
     earth: Earth = "flat",
 ) -> Linearization:
     """Linearize the core's AircraftModel at its state x (13 + k,) under inputs u.
 
-    u: (m,) in the plant's order, or by name (absent ones are zero). wind: the plant's, at this
-    point, (3,) m/s NED. Raises BadInput without airspeed, with the nose straight up or down, or
-    where a number is not finite.
+    u: (m,) in the plant's order, or by name (absent ones are zero). earth: the plant's. Raises
+    BadInput without airspeed, with the nose straight up or down, or where a number is not finite.
     """
     names = plant_inputs(plant)
     inputs = _by_name(u, names) if isinstance(u, Mapping) else np.asarray(u, dtype=np.float64)
-    air = np.zeros(3) if wind is None else np.asarray(wind, dtype=np.float64)
-    x0 = flight_state(np.asarray(x, dtype=np.float64), air, earth)
+    state = np.asarray(x, dtype=np.float64)
+    air = wind_at(plant, state, inputs, earth)
+    x0 = flight_state(state, air, earth)
     found = plant_matrices(plant, plant_state(x0, air, earth), inputs)
     if not all(np.isfinite(part).all() for part in (found.f, found.A, found.B, found.C, found.D)):
         raise refuse(

@@ -60,6 +60,7 @@ WORDS = {
     "third_oscillation": "third oscillation (short period and phugoid merged)",
 }
 _REAL = 1e-9  # of the size of the matrix: below it an imaginary part is rounding
+_ROUNDING = 1e-13  # of the size of the matrix: what a root at zero comes out as
 _REST = 1e-9  # 1/s: a root below it neither grows nor decays
 
 
@@ -170,12 +171,12 @@ def modes_of(
     given: dict[int, str] = {
         int(order[r]): distinct[columns[c]] for r, c in zip(rows, chosen, strict=True)
     }
-    flat = _REAL * float(np.abs(A * unit / unit[:, None]).max(initial=0.0))
+    size = float(np.abs(A * unit / unit[:, None]).max(initial=0.0))
     found = []
     for i, root in enumerate(roots):
         value = complex(root)
-        if abs(value.imag) <= flat:
-            value = complex(value.real, 0.0)
+        if abs(value.imag) <= _REAL * size:
+            value = complex(value.real if abs(value.real) > _ROUNDING * size else 0.0, 0.0)
         elif value.imag < 0.0:
             continue
         family = given[i]

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from alula.base.arrays import Array
-from alula.simulate.coordinates import BODY_STATES
+from alula.simulate.coordinates import BODY_STATES, Earth, wind_from
 
 INPUTS = (
     "de", "da", "dr", "df", "dt", "thrust", "ug", "vg", "wg", "pg", "qg", "rg",
@@ -56,6 +56,20 @@ def plant_rates(plant: Any, x: Array, u: Array) -> tuple[Array, Array]:
     f, y = np.empty(len(x)), np.empty(len(plant_outputs(plant)))
     plant.rates(np.ascontiguousarray(x), np.ascontiguousarray(u), f, y)
     return f, y
+
+
+def wind_at(plant: Any, x: Array, u: Array, earth: Earth) -> Array:
+    """The plant's wind (3,) m/s, NED, at a state: velocity against the Earth less that in the air.
+
+    Gusts are inputs and no part of it.
+    """
+    still = np.array(u, dtype=np.float64)
+    still[6:] = 0.0
+    V, alpha, beta = plant_rates(plant, x, still)[1][6:9]
+    air = V * np.array([np.cos(alpha) * np.cos(beta), np.sin(beta), np.sin(alpha) * np.cos(beta)])
+    wind = wind_from(x, air, earth)
+    # What rounding leaves of no wind is no wind.
+    return np.asarray(np.where(np.abs(wind) < 1e-12 * max(V, 1.0), 0.0, wind))
 
 
 def settled(plant: Any, x: Array, u: Array) -> Array:

@@ -13,8 +13,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from math import degrees
 
-import numpy as np
-
 from alula.aircraft import Envelope
 from alula.base.arrays import Array, frozen
 from alula.base.messages import Message, warn
@@ -89,15 +87,14 @@ def trim(
     if envelope is not None and envelope.alpha is not None and not in_spite:
         bounds.setdefault("alpha", envelope.alpha)
     held = dict(controls or {})
-    air = np.zeros(3) if wind is None else np.asarray(wind, dtype=np.float64)
-    problem = Problem(plant, condition, airframe, bounds, held, air, earth)
+    problem = Problem(plant, condition, airframe, bounds, held, earth)
     found = problem.solve()
     if found.residual > TOLERANCE:
         raise failure(condition, airframe, found, problem.solve, TOLERANCE)
     value = dict(zip(problem.names, found.values.tolist(), strict=True))
     outputs = dict(zip(plant_outputs(plant), found.outputs.tolist(), strict=True))
     further = {name: value[name] for name in further_states(plant)}
-    state = plant_state(found.values[: problem.n], air, earth)
+    state = plant_state(found.values[: problem.n], problem.wind, earth)
     result = Trim(
         state=frozen(state),
         controls={n: value[problem.input_name(n)] for n in ("de", "da", "dr", "df", "dt")},

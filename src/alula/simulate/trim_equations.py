@@ -20,7 +20,7 @@ from alula.simulate.coordinates import (
     flight_names,
     plant_state,
 )
-from alula.simulate.plant import further_states, plant_inputs, settled
+from alula.simulate.plant import further_states, plant_inputs, settled, wind_at
 
 CONTROLS = ("de", "da", "dr", "df", "dt")
 DRAWN = ("charge", "fuel_used")  # states that only count what was used: they do not rest
@@ -109,10 +109,9 @@ def rest(
     condition: Condition,
     airframe: Airframe,
     held: Mapping[str, float],
-    wind: Array,
     earth: Earth,
-) -> dict[str, float]:
-    """All flight states and inputs by name, in order, at the first guess.
+) -> tuple[dict[str, float], Array]:
+    """All flight states and inputs by name, in order, at the first guess; the wind there, NED.
 
     An input that shares its name with an actuator's position is called '<name>_command'.
     """
@@ -148,10 +147,11 @@ def rest(
             )
     n = len(flight_names(earth, further))
     start = np.array(list(values.values()))
+    wind = wind_at(plant, plant_state(start[:n], np.zeros(3), earth), start[n:], earth)
     x = plant_state(start[:n], wind, earth)
     for name, value in zip(further, settled(plant, x, start[n:])[BODY_STATES:], strict=True):
         values[name] = float(value)
-    return values
+    return values, wind
 
 
 def power_input(airframe: Airframe) -> str:

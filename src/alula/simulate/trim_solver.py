@@ -52,11 +52,10 @@ class Problem:
         airframe: Airframe,
         limits: Mapping[str, tuple[float, float]],
         held: Mapping[str, float],
-        wind: Array,
         earth: Earth,
     ) -> None:
-        self.plant, self.condition, self.wind, self.earth = plant, condition, wind, earth
-        self.first = rest(plant, condition, airframe, held, wind, earth)
+        self.plant, self.condition, self.earth = plant, condition, earth
+        self.first, self.wind = rest(plant, condition, airframe, held, earth)
         self.names = tuple(self.first)
         self.n = len(self.names) - len(plant_inputs(plant))
         start = np.array(list(self.first.values()))

@@ -38,7 +38,8 @@ def loadings_of(plan: Plan) -> dict[str, Loading]:
     more than mass: their derivatives could not be shared.
     """
     out = {
-        spec.id: _loading(plan, spec) for spec in plan.loadings or [LoadingSpec.model_construct()]
+        spec.id: _loading(plan, spec)
+        for spec in plan.loadings or [LoadingSpec.model_construct(id="")]
     }
     first = next(iter(out.values())).aircraft
     for loading in out.values():
@@ -56,7 +57,7 @@ def loadings_of(plan: Plan) -> dict[str, Loading]:
 
 
 def _loading(plan: Plan, spec: LoadingSpec) -> Loading:
-    id = getattr(spec, "id", "")
+    id = spec.id
     path = spec.aircraft or plan.aircraft
     original = load_aircraft(path)
     text = path.read_text(encoding="utf-8-sig")

@@ -43,7 +43,7 @@ def project_text(
         if loadings[one.loading].file != first.file:
             lines.append(f"aircraft = {toml_value(loadings[one.loading].file)}")
     lines += ["", "[channels]", 't = {from = "t_s", unit = "s"}']
-    formulas = _formulas(plan, model)
+    formulas = formulas_of(plan, model)
     for name in channels:
         if name == "dt" and not any("dt" in f for f in formulas.values()):
             continue  # in the logs, but a throttle that rests is of no use to anything
@@ -102,7 +102,7 @@ def _unit(plan: Plan, name: str) -> str:
     return f", unit = {toml_value(unit)}" if unit else ""
 
 
-def _formulas(plan: Plan, model: AeroModel) -> dict[str, str]:
+def formulas_of(plan: Plan, model: AeroModel) -> dict[str, str]:
     """The plan's formulas, or the model's own with a constant each."""
     formulas = dict(plan.identify)
     for name, formula in () if formulas else model.formulas.items():

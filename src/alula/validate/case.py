@@ -19,7 +19,8 @@ class Case:
     thrust at its start. area: m2, of the measured coefficients. thrust: (n,) N of all engines at
     motion.t, None for none. coefficients: (n,) each as measured, by name; for coefficients that the
     model lacks and for offsets. variables: (n,) each, the regressors as the estimate takes them.
-    missing: channels of the motion that were not recorded.
+    missing: channels of the motion that were not recorded. force: (n, 3) N of all engines in body
+    axes, to check that the forces close; None where the thrust is not known.
     """
 
     motion: Motion
@@ -30,3 +31,4 @@ class Case:
     coefficients: Mapping[str, Array] = field(default_factory=dict)
     variables: Mapping[str, Array] = field(default_factory=dict)
     missing: tuple[str, ...] = ()
+    force: Array | None = None

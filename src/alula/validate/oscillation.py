@@ -23,6 +23,7 @@ from alula.base.coloured import coloured_covariance
 
 FEWEST = 20  # samples
 VISIBLE = 20.0  # an oscillation of a twentieth of its first size has died out
+GROWTH = 5.0  # exponent over the stretch at most: a hundred and fifty times the first amplitude
 GRID = 400  # samples of each trace that the first, coarse search looks at
 FREQUENCIES, DAMPINGS = 60, (-0.1, 0.0, 0.05, 0.15, 0.3, 0.5)
 
@@ -101,8 +102,9 @@ def _fit(t: Array, traces: Mapping[str, Array]) -> Oscillation | None:
     low, high = 2.0 * np.pi * 0.7 / length, 2.0 * np.pi * (n - 1) / length / 4.0
     coarse = slice(None, None, max(1, n // GRID))
     x, y = tau[coarse], scaled[coarse]
+    slowest = -GROWTH / length
     starts = [
-        np.array([w, d * w / np.sqrt(1.0 - d * d)])
+        np.array([w, max(d * w / np.sqrt(1.0 - d * d), slowest)])
         for w in np.geomspace(low, min(high, 200.0 * low), FREQUENCIES)
         for d in DAMPINGS
     ]
@@ -114,7 +116,7 @@ def _fit(t: Array, traces: Mapping[str, Array]) -> Oscillation | None:
     found = least_squares(
         misfit,
         start,
-        bounds=([0.5 * low, -2.0 / length], [2.0 * high, 10.0 * high]),
+        bounds=([0.5 * low, 1.01 * slowest], [2.0 * high, 10.0 * high]),
         x_scale=[start[0], start[0]],
     )
     w, s = (float(v) for v in found.x)

@@ -136,8 +136,8 @@ def _closure(case: Case) -> list[Message]:
         return []
     pressure = 0.5 * motion.rho * motion.V**2 * case.area / case.airframe.mass
     force = np.column_stack([case.coefficients[n] for n in body]) * pressure[:, None]
-    if case.thrust is not None:
-        force += np.outer(case.thrust / case.airframe.mass, case.airframe.thrust_direction)
+    if case.force is not None:
+        force += case.force / case.airframe.mass
     left = np.mean(np.column_stack([motion.ax, motion.ay, motion.az]) - force, axis=0)
     k = int(np.argmax(np.abs(left)))
     if abs(left[k]) <= CLOSED:

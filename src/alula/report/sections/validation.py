@@ -220,10 +220,7 @@ def _match(result: Validation, one: Flown) -> Html:
                 number(q.r2, 3),
                 percent(q.rrmse, 3),
                 number(q.theil, 3),
-                *(
-                    number(x, 2) if math.isfinite(x) else MISSING
-                    for x in (q.bias, q.variance, q.covariance)
-                ),
+                *(_share(x) for x in (q.bias, q.variance, q.covariance)),
                 "as recorded: proves nothing" if c.as_recorded else "",
             ]
         )

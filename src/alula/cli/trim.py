@@ -1,0 +1,94 @@
+"""`alula trim AIRCRAFT`: attitude, controls and power that hold a flight condition."""
+
+from __future__ import annotations
+
+from math import degrees
+from typing import TYPE_CHECKING
+
+from alula.cli.condition import (
+    ActuatorsOption,
+    AircraftArgument,
+    AnywayOption,
+    Asked,
+    BankOption,
+    Engines,
+    EnginesOption,
+    FlapsOption,
+    FuelOption,
+    GammaOption,
+    HeightOption,
+    Kind,
+    KindOption,
+    LoadOption,
+    ModelOption,
+    PowerOption,
+    RateOption,
+    SpeedOption,
+    load,
+    trim_result,
+)
+from alula.cli.contract import Command, JsonOption, QuietOption, SeedOption, ThreadsOption
+
+if TYPE_CHECKING:
+    from alula.simulate import Trim
+
+
+def trim(
+    aircraft: AircraftArgument,
+    V: SpeedOption,
+    h: HeightOption,
+    model: ModelOption = None,
+    kind: KindOption = Kind.level,
+    gamma_deg: GammaOption = 0.0,
+    bank_deg: BankOption = None,
+    n: LoadOption = None,
+    turn_rate_deg: RateOption = None,
+    power: PowerOption = 0.0,
+    flaps_deg: FlapsOption = 0.0,
+    fuel_used: FuelOption = 0.0,
+    engines: EnginesOption = Engines.modeled,
+    actuators: ActuatorsOption = False,
+    anyway: AnywayOption = False,
+    json: JsonOption = "",
+    seed: SeedOption = None,
+    threads: ThreadsOption = 1,
+    quiet: QuietOption = False,
+) -> None:
+    """Trim an aircraft: level, climb, turn, pull-up or glide.
+
+    Exit 0: trimmed. 2: bad input, or no such flight: the force or moment that cannot be balanced
+    and the control at its stop are named.
+    """
+    command = Command("trim", json, seed, threads, quiet)
+    with command.run():
+        asked = Asked(
+            aircraft, model, V, h, kind, gamma_deg, bank_deg, n, turn_rate_deg, power, flaps_deg,
+            fuel_used, engines, actuators, anyway,
+        )  # fmt: skip
+        loaded = load(asked)
+        found = loaded.trimmed()
+        command.inputs = loaded.files
+        command.messages = [*loaded.aircraft.messages, *found.messages]
+        command.result = trim_result(found)
+        command.say(text_of(found))
+
+
+def text_of(found: Trim) -> str:
+    """What the commands print of a trimmed flight: degrees, SI."""
+    angles = {
+        "alpha": found.alpha, "beta": found.beta, "phi": found.phi, "theta": found.theta,
+        "gamma": found.gamma,
+    }  # fmt: skip
+    lines = [f"Trimmed: {found.condition.words}"]
+    lines += [f"  {name:<12}{degrees(value) + 0.0:>12.4f} deg" for name, value in angles.items()]
+    if found.turn_rate:
+        lines.append(f"  {'turn rate':<12}{degrees(found.turn_rate):>12.4f} deg/s")
+    lines.append(f"  {'load factor':<12}{found.load_factor:>12.4f}")
+    for name in ("de", "da", "dr", "df"):
+        lines.append(f"  {name:<12}{degrees(found.controls[name]) + 0.0:>12.4f} deg")
+    if "dt" in found.free or "dt_command" in found.free or found.controls["dt"]:
+        lines.append(f"  {'throttle':<12}{found.controls['dt']:>12.4f}")
+    if "thrust" in found.free or found.thrust:
+        lines.append(f"  {'thrust':<12}{found.thrust:>12.4g} N")
+    lines += [f"  {name:<12}{value:>12.5g}" for name, value in found.further.items()]
+    return "\n".join(lines)
