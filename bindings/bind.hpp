@@ -3,6 +3,8 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 
+#include "alula/math/vec3.hpp"
+
 namespace nb = nanobind;
 
 // Contiguous double arrays on the CPU; Python callers convert, nothing is copied here.
@@ -12,8 +14,14 @@ using VectorOut = nb::ndarray<double, nb::ndim<1>, nb::c_contig, nb::device::cpu
 using MatrixOut = nb::ndarray<double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 using CubeOut = nb::ndarray<double, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
 
+inline alula::Vec3<double> vec3(Vector a, const char* what) {
+  if (a.shape(0) != 3) throw nb::value_error(what);
+  return {a(0), a(1), a(2)};
+}
+
 void bind_path(nb::module_& m);
 void bind_processor(nb::module_& m);
 void bind_aero(nb::module_& m);
 void bind_atmosphere(nb::module_& m);
 void bind_simulate(nb::module_& m);
+void bind_aircraft(nb::module_& m);

@@ -7,5 +7,6 @@ NB_MODULE(ALULA_MODULE, m) {
   bind_processor(m);
   bind_aero(m);
   bind_atmosphere(m);
+  bind_aircraft(m);
   bind_simulate(m);
 }

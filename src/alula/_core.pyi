@@ -87,11 +87,14 @@ def has_x86_64_v3() -> bool:
 
 class TermTable:
     """
-    An aerodynamic model as steps (operation, a, b, knot) and terms
-    (coefficient, slot). Operations: 0 multiply, 1 absolute, 2 ramp.
+    An aerodynamic model as steps (operation, a, b, knot) or (operation, a,
+    b, knot, c, table) and terms (coefficient, slot). Operations: 0 multiply,
+    1 absolute, 2 ramp, 3 sign, 4 lookup of table number `table` at slots a,
+    b, c (0 for axes it does not have). tables: (breakpoints of each axis,
+    values row by row, cubic, continued by lines); their numbers are copied.
     """
 
-    def __init__(self, steps: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], terms: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> None: ...
+    def __init__(self, steps: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], terms: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], tables: Sequence[tuple[Sequence[Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], bool, bool]] = []) -> None: ...
 
     def evaluate(self, values: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], variables: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], out: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None:
         """
@@ -105,6 +108,9 @@ class TermTable:
     @property
     def step_count(self) -> int: ...
 
+    @property
+    def table_count(self) -> int: ...
+
 def standard_atmosphere(h: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], out: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None:
     """
     Temperature (K), pressure (Pa), density (kg/m3) and speed of sound (m/s) of the 1976
@@ -113,27 +119,105 @@ def standard_atmosphere(h: Annotated[NDArray[numpy.float64], dict(shape=(None,),
 
 class AircraftModel:
     """
-    A rigid aircraft with its aerodynamic model; positions from the center of
-    gravity, body axes; geometry: S, b, c.
+    A rigid aircraft with its aerodynamic model, engines and what else has states.
+    Positions are from the center of gravity, body axes, m; geometry: S, b, c.
     """
 
-    def __init__(self, mass: float, inertia: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], geometry: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], reference_point: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], thrust_point: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], thrust_direction: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], wind: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], gravity: float, stability_axes: bool, table: TermTable, values: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> None: ...
+    def __init__(self, mass: float, inertia: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], geometry: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], reference_point: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], gravity: float, stability_axes: bool, table: TermTable, values: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], wgs84: bool = False) -> None: ...
 
-    def fly(self, x0: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], inputs: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], dt: float, substeps: int, states: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], outputs: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> int:
+    def add_given(self, point: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], direction: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], share: float) -> None:
+        """An engine whose thrust is an input; share: its part of it."""
+
+    def add_piston(self, point: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], direction: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], diameter: float, inertia: float, sense: float, J: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], CT: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], CP: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], omega: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], torque: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], reduction: float, gear_sense: float, crank_inertia: float, friction: float, idle: float, consumption: float) -> None:
         """
-        Fly from x0 (13) under inputs (n, 6) with RK4; write states (n, 13) and outputs
-        (n, 17); return the number of samples before the state stopped being finite.
+        A piston engine with propeller: see propulsion/piston.hpp and propeller.hpp.
+        """
+
+    def add_electric(self, point: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], direction: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], diameter: float, inertia: float, sense: float, J: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], CT: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], CP: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], k_V: float, k_T: float, no_load_current: float, resistance: float, full_voltage: float, empty_voltage: float, capacity: float, most_current: float, most_regenerated_current: float) -> None:
+        """
+        An electric motor with propeller: see propulsion/electric.hpp and propeller.hpp.
+        """
+
+    def add_turbofan(self, point: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], direction: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], idle: tuple[Sequence[Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], bool, bool], military: tuple[Sequence[Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], bool, bool], maximum: tuple[Sequence[Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], bool, bool] | None, military_at: float, tau: float, consumption: float, angular_momentum: float, sense: float, idle_speed: float) -> None:
+        """
+        A turbofan; tables over Mach number and height, as TermTable takes them.
+        """
+
+    def set_actuator(self, control: int, tau: float, rate_limit: float, low: float, high: float, dead_band: float, tau_down: float) -> None:
+        """The actuator of control 0 to 4: de da dr df dt."""
+
+    def set_stall(self, a1: float, alpha_star: float, tau1: float, tau2: float, CL_alpha: float, alpha_0: float, CD_X: float, Cm_X: float, y_station: float, alpha_star_difference: float) -> None:
+        """Separation of the flow: see aero/stall.hpp."""
+
+    def set_fuel(self, mass: float, position: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], inertia: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> None:
+        """Fuel aboard that burns: kg, its center, its inertia about it."""
+
+    def set_wind(self, steady: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], shear: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], reference_height: float, logarithmic: bool, roughness: float, ground: float) -> None:
+        """Wind, NED, the way it blows to: see motion/wind.hpp."""
+
+    @property
+    def further_states(self) -> list[str]:
+        """Names of the states behind position, attitude, velocity and rates."""
+
+    @property
+    def state_count(self) -> int: ...
+
+    @property
+    def input_count(self) -> int: ...
+
+    @property
+    def output_count(self) -> int: ...
+
+    def fly(self, x0: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], controls: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], dt: float, substeps: int, states: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], outputs: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], inputs: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], hold: bool = False, gusts: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)] | None = None, turbulence: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)] | None = None, normals: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)] | None = None, gains: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)] | None = None, limits: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)] | None = None, references: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)] | None = None, active: Annotated[NDArray[numpy.bool_], dict(shape=(None,), order='C', device='cpu', writable=False)] | None = None) -> int:
+        """
+        Fly from x0 (state_count) under controls (n, 6) with RK4; write states (n,
+        state_count), outputs (n, 24) and inputs (n, 12) as flown; return the number of samples
+        before the state stopped being finite. hold: controls stay between samples, else lines.
+        gusts (n, 6); turbulence (span, W20, sigma) with normals ((n - 1) substeps + 1, 8); a
+        pilot: gains (5, 10), limits (5, 2), references (n, 10), active (n).
         """
 
     def rates(self, x: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], u: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], dx: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], y: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]) -> None:
-        """State rates dx (13) and outputs y (17) at one state and input."""
+        """
+        State rates dx (state_count) and outputs y (24) at one state and input (6 or 12).
+        """
+
+    def jacobian(self, x: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], u: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> tuple:
+        """
+        A (n, n), B (n, 12), C (24, n), D (24, 12), exact, at a state and an input.
+        """
+
+    def settle(self, x: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], u: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], out: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]) -> None:
+        """
+        The state with rotors, power, separation and actuators as they come to rest in this
+        motion; x: 13 states or all.
+        """
 
 def quaternion_from_euler(phi: float, theta: float, psi: float, out: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]) -> None:
     """Quaternion (4,), scalar first, of Euler angles 3-2-1, rad."""
 
-def attitudes(states: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], euler: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], rotation: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')]) -> None:
+def ecef_state(latitude: float, longitude: float, height: float, phi: float, theta: float, psi: float, position: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], quaternion: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]) -> None:
     """
-    Euler angles phi theta psi (n, 3), rad, and R_BE (n, 3, 3) of states (n, 13).
+    Position (3,) m ECEF and quaternion (4,) from ECEF to body axes of a WGS-84 place
+    (rad, rad, m) and Euler angles against north, east, down (rad).
+    """
+
+def attitudes(states: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], euler: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], rotation: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], where: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], wgs84: bool) -> None:
+    """
+    Of states (n, 13 or more): Euler angles phi theta psi (n, 3), rad; R_BE (n, 3, 3) from
+    north, east, down; and where (n, 3): north, east, height (m), or on WGS-84 latitude,
+    longitude (rad), height (m).
+    """
+
+def tumbling_drift(inertia: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], rates: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], dt: float, steps: int) -> tuple:
+    """
+    Largest relative drift, over a torque-free rotation, of energy, of the length of the
+    angular momentum, and of its vector in inertial axes.
+    """
+
+def cosine_gust(t: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], amplitude: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], start: float, length: float, speed: float, returns: bool, out: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None:
+    """
+    A gust of one minus cosine at times t (n,), into the first three columns of out.
     """
 
 def specific_force_at(f: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], w: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], w_dot: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], r: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], out: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None:

@@ -55,7 +55,8 @@ def test_motion_is_consistent_with_itself(airframe: Airframe, model: AeroModel) 
     de = trim.controls["de"] + 0.03 * np.sin(2.0 * t)
     da = 0.05 * np.sin(1.5 * t)
     controls = {**trim.controls, "de": de, "da": da, "thrust": trim.thrust}
-    flight = fly(airframe, model, trim.state, t, controls)
+    # Without the stall, whose increments are no terms of the model.
+    flight = fly(airframe, model, trim.state[:13], t, controls, stall=False)
     m = flight.motion
     # Rates of change of the states against central differences: h^2 / 6 of the third derivative,
     # 4e-4 of the amplitude at 5 rad/s; five times that at the start, where the inputs set in.

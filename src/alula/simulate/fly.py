@@ -3,27 +3,37 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 from alula.base.arrays import Array, frozen
-from alula.base.messages import refuse
+from alula.base.messages import Message, refuse
 from alula.core import core
 from alula.flight import Maneuver, Motion
 from alula.model import AXES, AeroModel
-from alula.simulate.airframe import GRAVITY, Airframe, core_model
+from alula.simulate.airframe import GRAVITY, Airframe, Earth, core_model
+from alula.simulate.flight_check import check_step, outside_validity
+from alula.simulate.pilot import Pilot
+from alula.simulate.wind import Turbulence, Wind
 
-CONTROLS = ("de", "da", "dr", "df", "dt", "thrust")  # the core's inputs, in its order
+CONTROLS = ("de", "da", "dr", "df", "dt", "thrust")  # the core's first inputs, in its order
+BODY_STATES = 13
 
 
 @dataclass(frozen=True)
 class SimulatedFlight:
     """What the aircraft did, without any sensor between.
 
-    motion: as reconstruction would give it, coefficients in `motion.recorded`. position: (n, 3)
-    m NED. velocity: (n, 3) m/s against the Earth, NED. air_velocity: (n, 3) m/s body axes.
-    mach: (n,).
+    motion: as reconstruction would give it, coefficients in `motion.recorded`, controls as they
+    stood (behind actuators). position: (n, 3) north, east, down, m; on WGS-84 latitude, longitude
+    (rad), height (m). velocity: (n, 3) m/s against the Earth, NED. air_velocity: (n, 3) m/s body
+    axes. mach: (n,). states: further states (n,) by name: rotor speeds 'omega' rad/s, 'power',
+    'charge' A s, separation 'X', actuators, 'fuel_used' kg. inputs: (n, 12) as flown, pilot, gusts
+    and turbulence included: de da dr df dt thrust ug vg wg pg qg rg. engine_force (N), engine_moment
+    (N m, about the center of gravity): (n, 3) body axes. plant_states: (n, k), all states of the
+    core; any row starts a flight. messages: what was noticed.
     """
 
     motion: Motion
@@ -31,6 +41,12 @@ class SimulatedFlight:
     velocity: Array
     air_velocity: Array
     mach: Array
+    states: Mapping[str, Array] = field(default_factory=dict)
+    inputs: Array = field(default_factory=lambda: frozen(np.zeros((0, 12))))
+    engine_force: Array = field(default_factory=lambda: frozen(np.zeros((0, 3))))
+    engine_moment: Array = field(default_factory=lambda: frozen(np.zeros((0, 3))))
+    plant_states: Array = field(default_factory=lambda: frozen(np.zeros((0, BODY_STATES))))
+    messages: tuple[Message, ...] = ()
 
 
 def initial_state(
@@ -44,25 +60,38 @@ def initial_state(
     psi: float = 0.0,
     rates: tuple[float, float, float] = (0.0, 0.0, 0.0),
     wind: Array | None = None,
+    earth: Earth = "flat",
+    latitude: float = 0.0,
+    longitude: float = 0.0,
 ) -> Array:
     """State (13,) of the core for an airspeed (m/s), flow and Euler angles (rad), height (m).
 
-    rates: p q r, rad/s; wind: (3,) NED m/s, the way it blows to.
+    rates: p q r against inertial space, rad/s; wind: (3,) NED m/s, the way it blows to. latitude,
+    longitude: geodetic, rad, on WGS-84.
     """
-    quaternion = np.empty(4)
-    core.quaternion_from_euler(phi, theta, psi, quaternion)
+    position, quaternion = np.array([0.0, 0.0, -h]), np.empty(4)
+    if earth == "wgs84":
+        core.ecef_state(latitude, longitude, h, phi, theta, psi, position, quaternion)
+    else:
+        core.quaternion_from_euler(phi, theta, psi, quaternion)
     air = V * np.array([np.cos(alpha) * np.cos(beta), np.sin(beta), np.sin(alpha) * np.cos(beta)])
-    state = np.concatenate([[0.0, 0.0, -h], quaternion, air, rates])
+    state = np.concatenate([position, quaternion, air, rates])
     if wind is not None:
-        state[7:10] += attitudes(state[None])[1][0] @ wind
+        state[7:10] += attitudes(state[None], earth)[1][0] @ wind
     return state
 
 
-def attitudes(states: Array) -> tuple[Array, Array]:
-    """Euler angles (n, 3) rad and R_BE (n, 3, 3) of the core's states (n, 13)."""
-    euler, rotation = np.empty((len(states), 3)), np.empty((len(states), 3, 3))
-    core.attitudes(states, euler, rotation)
-    return euler, rotation
+def attitudes(states: Array, earth: Earth = "flat") -> tuple[Array, Array]:
+    """Euler angles (n, 3) rad and R_BE (n, 3, 3) from NED of the core's states (n, 13 or more)."""
+    return _attitudes(states, earth)[:2]
+
+
+def _attitudes(states: Array, earth: Earth) -> tuple[Array, Array, Array]:
+    """Also the places (n, 3): north, east, height, or latitude, longitude, height."""
+    n = len(states)
+    euler, rotation, where = np.empty((n, 3)), np.empty((n, 3, 3)), np.empty((n, 3))
+    core.attitudes(np.ascontiguousarray(states), euler, rotation, where, earth == "wgs84")
+    return euler, rotation, where
 
 
 def fly(
@@ -72,16 +101,26 @@ def fly(
     t: Array,
     controls: Mapping[str, Array | float],
     *,
-    wind: Array | None = None,
+    wind: Array | Wind | None = None,
     gravity: float = GRAVITY,
     substeps: int = 1,
     maneuver: Maneuver | None = None,
+    hold: bool = False,
+    gusts: Array | None = None,
+    turbulence: Turbulence | None = None,
+    pilot: Pilot | None = None,
+    stall: bool = True,
+    check: bool = False,
 ) -> SimulatedFlight:
-    """Fly from x0 (13,), see `initial_state`, over times t (n,) of even spacing.
+    """Fly from x0 over times t (n,) of even spacing.
 
-    controls: `de da dr df` rad, `dt`, `thrust` N, each (n,) or one number; absent ones are zero;
-    straight lines between samples. substeps: RK4 steps per sample. Raises BadInput where time is
-    not even, a control is unknown or not finite, or the flight diverges.
+    x0: (13,), see `initial_state` (rotors, separation, actuators then start as they come to rest
+    in that motion), or all states of the core. controls: `de da dr df` rad, `dt`, `thrust` N, each
+    (n,) or one number; absent ones are zero; straight lines between samples, or held. substeps:
+    RK4 steps per sample. gusts: (n, 6) ug vg wg m/s, pg qg rg rad/s, body axes. stall: False
+    leaves the model's stall out. check: refuse a step that is too large for the fastest mode of
+    the start. Raises BadInput where time is not even, a control is unknown or not finite, or the
+    flight diverges.
     """
     t = np.asarray(t, dtype=np.float64)
     dt = (t[-1] - t[0]) / (len(t) - 1) if len(t) > 1 else 0.0
@@ -93,13 +132,24 @@ def fly(
             found=f"{len(t)} times, mean step {dt:g} s",
             do="Give evenly spaced times.",
         )
-    inputs = _inputs(controls, len(t))
-    states, outputs = np.empty((len(t), 13)), np.empty((len(t), 17))
-    start = np.ascontiguousarray(x0, dtype=np.float64)
-    flown = core_model(airframe, model, wind, gravity).fly(
-        start, inputs, dt, substeps, states, outputs
-    )
-    if flown < len(t):
+    n = len(t)
+    inputs = _inputs(controls, n)
+    plant = core_model(airframe, model, wind, gravity, stall=stall)
+    extra: dict[str, Any] = {} if pilot is None else pilot.arguments(n)
+    if gusts is not None:
+        extra["gusts"] = _gusts(gusts, n)
+    if turbulence is not None:
+        extra["turbulence"] = np.array([model.reference.b, turbulence.W20, turbulence.sigma])
+        extra["normals"] = turbulence.normals((n - 1) * substeps + 1)
+    start = _start(plant, x0, inputs[0])
+    messages: tuple[Message, ...] = ()
+    if check:
+        A = plant.jacobian(start, inputs[0])[0]
+        messages = check_step(A, dt / substeps)
+    states, outputs = np.empty((n, plant.state_count)), np.empty((n, plant.output_count))
+    flown_inputs = np.empty((n, plant.input_count))
+    flown = plant.fly(start, inputs, dt, substeps, states, outputs, flown_inputs, hold, **extra)
+    if flown < n:
         raise refuse(
             "diverged",
             where=f"simulation, t = {t[flown]:g} s",
@@ -108,7 +158,28 @@ def fly(
             do="Check the model's signs, the mass properties and the inputs.",
         )
     maneuver = maneuver or Maneuver("flight", "simulation", "simulated", float(t[0]), float(t[-1]))
-    return _as_flight(model, maneuver, t, inputs, states, outputs)
+    names = plant.further_states
+    return _as_flight(
+        airframe, model, maneuver, t, names, states, outputs, flown_inputs, messages
+    )
+
+
+def _start(plant: Any, x0: Array, u: Array) -> Array:
+    """All states to start from."""
+    start = np.array(x0, dtype=np.float64)
+    if start.shape not in ((BODY_STATES,), (plant.state_count,)):
+        raise refuse(
+            "initial_state",
+            where="simulation",
+            expected=f"13 states, or {plant.state_count}: {', '.join(plant.further_states)} too",
+            found=f"shape {start.shape}",
+            do="Use initial_state, a trim of the same aircraft, or a row of plant_states.",
+        )
+    if len(start) == plant.state_count:
+        return start
+    settled = np.zeros(plant.state_count)
+    plant.settle(start, u, settled)
+    return settled
 
 
 def _inputs(controls: Mapping[str, Array | float], n: int) -> Array:
@@ -135,12 +206,36 @@ def _inputs(controls: Mapping[str, Array | float], n: int) -> Array:
     return out
 
 
+def _gusts(gusts: Array, n: int) -> Array:
+    out = np.ascontiguousarray(gusts, dtype=np.float64)
+    if out.shape != (n, 6) or not np.isfinite(out).all():
+        raise refuse(
+            "bad_gust",
+            where="simulation, gusts",
+            expected=f"finite numbers of shape ({n}, 6): ug vg wg m/s, pg qg rg rad/s",
+            found=f"shape {out.shape}",
+            do="Give one row per time.",
+        )
+    return out
+
+
 def _as_flight(
-    model: AeroModel, maneuver: Maneuver, t: Array, inputs: Array, states: Array, outputs: Array
+    airframe: Airframe,
+    model: AeroModel,
+    maneuver: Maneuver,
+    t: Array,
+    names: list[str],
+    states: Array,
+    outputs: Array,
+    inputs: Array,
+    messages: tuple[Message, ...],
 ) -> SimulatedFlight:
-    euler, R = attitudes(states)
+    euler, R, where = _attitudes(states, airframe.earth)
     ax, ay, az, pdot, qdot, rdot, V, alpha, beta, mach, rho = (frozen(c) for c in outputs.T[:11])
     p, q, r = (frozen(c) for c in states.T[10:13])
+    further = {name: frozen(states[:, BODY_STATES + i]) for i, name in enumerate(names)}
+    # Behind an actuator a control stands where the actuator is.
+    controls = {name: further.get(name, frozen(inputs[:, i])) for i, name in enumerate(CONTROLS[:5])}
     motion = Motion(
         maneuver=maneuver,
         t=frozen(t),
@@ -149,18 +244,24 @@ def _as_flight(
         pdot=pdot, qdot=qdot, rdot=rdot,
         ax=ax, ay=ay, az=az,
         phi=frozen(euler[:, 0]), theta=frozen(euler[:, 1]), psi=frozen(euler[:, 2]),
-        h=frozen(-states[:, 2]),
+        h=frozen(where[:, 2]),
         rho=rho,
-        controls={name: frozen(inputs[:, i]) for i, name in enumerate(CONTROLS[:5])},
-        thrust=frozen(inputs[:, 5]),
+        controls=controls,
+        thrust=frozen(outputs[:, 23]),
         recorded={c: frozen(outputs[:, 11 + i]) for i, c in enumerate(AXES[model.axes])},
     )  # fmt: skip
     cosine = np.cos(beta)
     air = np.stack([np.cos(alpha) * cosine, np.sin(beta), np.sin(alpha) * cosine], axis=1)
     return SimulatedFlight(
         motion=motion,
-        position=frozen(states[:, :3]),
+        position=frozen(where if airframe.earth == "wgs84" else states[:, :3]),
         velocity=frozen(np.einsum("nij,ni->nj", R, states[:, 7:10])),
         air_velocity=frozen(V[:, None] * air),
         mach=mach,
+        states=further,
+        inputs=frozen(inputs),
+        engine_force=frozen(outputs[:, 17:20]),
+        engine_moment=frozen(outputs[:, 20:23]),
+        plant_states=frozen(states),
+        messages=(*messages, *outside_validity(model, motion, mach)),
     )

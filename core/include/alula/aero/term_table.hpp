@@ -1,11 +1,13 @@
 #pragma once
-// An aerodynamic model as a table: steps make products, absolute values and ramps out of the base
-// variables; terms add a value times one of these slots to a coefficient. Text is parsed to it
-// outside the core; the same bytes serve host and target, and exporters walk them.
+// An aerodynamic model as a table: steps make products, absolute values, ramps, signs and looked-up
+// values out of the base variables; terms add a value times one of these slots to a coefficient.
+// Text is parsed to it outside the core; the same bytes serve host and target, and exporters walk
+// them. Lookup tables are named by their number; their data lie beside the table, with the caller.
 #include <array>
 #include <cstdint>
 #include <type_traits>
 
+#include "alula/aero/lookup.hpp"
 #include "alula/math/capacity.hpp"
 
 namespace alula {
@@ -37,12 +39,14 @@ enum class Operation : std::uint8_t {
   multiply,  // slot a times slot b
   absolute,  // |slot a|
   ramp,      // slot a less the knot, where that is positive; else zero
+  sign,      // -1, 0 or 1 by the sign of slot a
+  lookup,    // lookup table number `table` at slots a, b, c; axes it does not have: slot 0
 };
 
 struct Step {
   double knot;
   Operation operation;
-  std::uint8_t a, b;
+  std::uint8_t a, b, c, table;
 };
 
 struct Term {
@@ -57,13 +61,16 @@ struct TermTable {
 };
 static_assert(std::is_trivially_copyable_v<TermTable> && sizeof(TermTable) < 2048);
 
-// Whether every step looks back only, and every index is inside its array.
-constexpr bool well_formed(const TermTable& table) {
+// Whether every step looks back only, and every index is inside its array. table_count: lookup
+// tables that lie beside.
+constexpr bool well_formed(const TermTable& table, int table_count = 0) {
   if (table.step_count > kMaxSteps || table.term_count > kMaxTerms) return false;
   for (int i = 0; i < table.step_count; ++i) {
     const Step& step = table.steps[static_cast<unsigned>(i)];
-    if (step.a >= kVariables + i || step.b >= kVariables + i) return false;
-    if (step.operation > Operation::ramp) return false;
+    const int own = kVariables + i;
+    if (step.a >= own || step.b >= own || step.c >= own) return false;
+    if (step.operation > Operation::lookup) return false;
+    if (step.operation == Operation::lookup && step.table >= table_count) return false;
   }
   for (int k = 0; k < table.term_count; ++k) {
     const Term& term = table.terms[static_cast<unsigned>(k)];
@@ -74,8 +81,9 @@ constexpr bool well_formed(const TermTable& table) {
 }
 
 // Fills the slots behind the base variables, which the caller has put into the first places.
-template <class S>
-constexpr void fill_slots(const TermTable& table, S* slots) {
+// tables: the lookup tables that the steps name.
+template <class S, class T = double>
+constexpr void fill_slots(const TermTable& table, S* slots, const Lookup<T>* tables = nullptr) {
   for (int i = 0; i < table.step_count; ++i) {
     const Step& step = table.steps[static_cast<unsigned>(i)];
     const S& a = slots[step.a];
@@ -84,6 +92,10 @@ constexpr void fill_slots(const TermTable& table, S* slots) {
       case Operation::multiply: out = a * slots[step.b]; break;
       case Operation::absolute: out = a < S(0) ? -a : a; break;
       case Operation::ramp: out = a > S(step.knot) ? a - S(step.knot) : S(0); break;
+      case Operation::sign: out = a > S(0) ? S(1) : a < S(0) ? S(-1) : S(0); break;
+      case Operation::lookup:
+        out = lookup(tables[step.table], a, slots[step.b], slots[step.c]);
+        break;
     }
   }
 }

@@ -34,6 +34,15 @@ constexpr Vec3<Product<A, B>> transposed_times(const Mat3<A>& m, const Vec3<B>& 
   return v.x * m.row[0] + v.y * m.row[1] + v.z * m.row[2];
 }
 
+// Two turns, the first `a`: earth_to_body(a * b) is earth_to_body(b) earth_to_body(a).
+template <class S>
+constexpr Quaternion<S> operator*(const Quaternion<S>& a, const Quaternion<S>& b) {
+  return {a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z,
+          a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
+          a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
+          a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};
+}
+
 // Rate of the quaternion for body rates w (rad/s). The last part draws the norm back to one with
 // rate `pull` (1/s) and does not turn the attitude (Stevens and Lewis, 2nd ed., section 1.3).
 template <class S>
@@ -58,15 +67,19 @@ Quaternion<S> quaternion_from_euler(const S& phi, const S& theta, const S& psi) 
           cx * cy * sz - sx * sy * cz};
 }
 
-// Euler angles {phi, theta, psi}, rad; psi in (-pi, pi]. Pitch comes from atan2, so that rounding
-// at plus or minus 90 degrees gives no NaN.
+// Euler angles {phi, theta, psi}, rad, of R_BE; psi in (-pi, pi]. Pitch comes from atan2, so that
+// rounding at plus or minus 90 degrees gives no NaN.
 template <class S>
-Vec3<S> euler_from_quaternion(const Quaternion<S>& q) {
+Vec3<S> euler_from_rotation(const Mat3<S>& r) {
   using std::atan2;
   using std::sqrt;
-  const Mat3<S> r = earth_to_body(q);
   const S c = sqrt(r.row[0].x * r.row[0].x + r.row[0].y * r.row[0].y);
   return {atan2(r.row[1].z, r.row[2].z), atan2(-r.row[0].z, c), atan2(r.row[0].y, r.row[0].x)};
+}
+
+template <class S>
+Vec3<S> euler_from_quaternion(const Quaternion<S>& q) {
+  return euler_from_rotation(earth_to_body(q));
 }
 
 }  // namespace alula

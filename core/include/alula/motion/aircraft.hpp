@@ -1,133 +1,135 @@
 #pragma once
-// The equations of motion of an aircraft: rigid body, flat Earth, standard atmosphere, steady
-// wind, aerodynamic model as a term table, one thrust with its line of action.
-#include <array>
-
-#include "alula/aero/term_table.hpp"
-#include "alula/math/capacity.hpp"
-#include "alula/motion/atmosphere.hpp"
-#include "alula/motion/flat_earth.hpp"
-#include "alula/motion/rigid_body.hpp"
+// The equations of motion of an aircraft: dx/dt = f(t, x, u, params), and what it feels.
+#include "alula/motion/loads.hpp"
 
 namespace alula {
 
-// State: position NED (m), attitude quaternion, ground velocity in body axes (m/s), body rates.
-inline constexpr int kBodyStates = 13;
+// Outputs: specific force ax ay az (m/s2), pdot qdot rdot (rad/s2), V alpha beta mach density,
+// six coefficients, force (N) and moment (N m, about the center of gravity) of the engines, thrust.
+inline constexpr int kFlightOutputs = 24;
 template <class S>
-using BodyState = std::array<S, kBodyStates>;
+using FlightOutput = std::array<S, kFlightOutputs>;
 
-// Input: de da dr df (rad), dt, thrust (N).
-inline constexpr int kBodyInputs = 6;
-template <class S>
-using BodyInput = std::array<S, kBodyInputs>;
-
-// Read-only while it flies. Positions are from the center of gravity, body axes, m.
-template <class T>
-struct AircraftModel {
-  MassProperties<T> body;
-  T S{1}, b{1}, c{1};
-  Vec3<T> reference_point{};          // where the moment coefficients act
-  Vec3<T> thrust_point{};             // a point of the thrust's line of action
-  Vec3<T> thrust_direction{1, 0, 0};  // unit vector
-  Vec3<T> wind{};                     // NED, the way it blows to
-  T gravity{T(kStandardGravity)};
-  bool stability_axes = false;  // coefficients are CD CY CL instead of CX CY CZ
-  TermTable table{};
-  std::array<T, kMaxTerms> values{};
-};
-
-// What acts on the aircraft at one instant; forces and moments in body axes about the center of
-// gravity, gravity apart.
-template <class S>
-struct Loads {
-  Air<S> air;
-  FlowAngles<S> flow;
-  S mach;
-  std::array<S, kCoefficients> coefficients;  // as the model gives them
-  Vec3<S> force, moment;
-};
-
-// Below this airspeed (m/s) there are no flow angles, and no aerodynamic force either.
-inline constexpr double kLeastAirspeed = 1e-3;
-
-template <class S, class T>
-Loads<S> loads(const BodyState<S>& x, const BodyInput<S>& u, const AircraftModel<T>& a,
-               const Mat3<S>& R_BE) {
-  using std::sqrt;
-  const Vec3<S> w{x[10], x[11], x[12]};
-  Loads<S> out;
-  out.air = standard_atmosphere(-x[2]);
-  const Vec3<S> v = air_velocity(R_BE, Vec3<S>{x[7], x[8], x[9]}, a.wind);
-  const Vec3<S> thrust = u[5] * a.thrust_direction;
-  out.force = thrust;
-  out.moment = cross(a.thrust_point, thrust);
-
-  const S speed_squared = dot(v, v);
-  if (!(speed_squared > S(kLeastAirspeed * kLeastAirspeed))) {
-    out.flow = {S(0), S(0), S(0)};
-    out.mach = S(0);
-    out.coefficients = {};
-    return out;
-  }
-  out.flow = flow_angles(v);
-  out.mach = out.flow.V / out.air.speed_of_sound;
-
-  const S half_over_V = S(0.5) / out.flow.V;
-  const S span = half_over_V * a.b, chord = half_over_V * a.c;
-  S slots[kMaxSlots];
-  slots[kOne] = S(1);
-  slots[kV] = out.flow.V;
-  slots[kAlpha] = out.flow.alpha;
-  slots[kBeta] = out.flow.beta;
-  slots[kPhat] = w.x * span;
-  slots[kQhat] = w.y * chord;
-  slots[kRhat] = w.z * span;
-  for (int i = 0; i < 5; ++i) slots[kDe + i] = u[static_cast<unsigned>(i)];
-  slots[kMach] = out.mach;
-  fill_slots(a.table, slots);
-  out.coefficients = coefficients(a.table, a.values.data(), slots);
-
-  const auto& C = out.coefficients;
-  S CX = C[0], CZ = C[2];
-  if (a.stability_axes) {
-    const S plane = sqrt(v.x * v.x + v.z * v.z);
-    const bool along_y = !(plane > S(kLeastAirspeed));  // then alpha is taken as zero
-    const S cosine = along_y ? S(1) : v.x / plane, sine = along_y ? S(0) : v.z / plane;
-    CX = C[2] * sine - C[0] * cosine;
-    CZ = -(C[2] * cosine) - C[0] * sine;
-  }
-  const S pressure_area = (S(0.5) * out.air.density * speed_squared) * a.S;
-  const Vec3<S> aero{pressure_area * CX, pressure_area * C[1], pressure_area * CZ};
-  const Vec3<S> about_reference{pressure_area * a.b * C[3], pressure_area * a.c * C[4],
-                                pressure_area * a.b * C[5]};
-  out.force = out.force + aero;
-  out.moment = out.moment + about_reference + cross(a.reference_point, aero);
-  return out;
+// Rates of the body's states and what comes with them. M: scalar of the mass properties.
+template <class S, class M>
+void body_rate(const FlightState<S>& x, const Place<S>& at, const Loads<S>& load,
+               const MassProperties<M>& body, const Vec3<S>& moment, FlightState<S>& rate) {
+  const Vec3<S> v{x[7], x[8], x[9]}, w{x[10], x[11], x[12]};
+  const Vec3<S> position = transposed_times(at.R_BE, v);
+  const Quaternion<S> turn = attitude_rate(Quaternion<S>{x[3], x[4], x[5], x[6]},
+                                           w - at.earth_rate, S(1));  // pull 1/s: slow and stable
+  // Coriolis' acceleration counts the Earth's rate twice, once in w already.
+  const Vec3<S> dv = velocity_rate((M(1) / body.mass) * load.force, at.gravity, v,
+                                   w + at.earth_rate);
+  const Vec3<S> dw = angular_acceleration(body, moment, w);
+  const S rates[kBodyStates] = {position.x, position.y, position.z, turn.w, turn.x, turn.y, turn.z,
+                                dv.x,       dv.y,       dv.z,       dw.x,   dw.y,   dw.z};
+  for (int i = 0; i < kBodyStates; ++i) rate[i] = rates[i];
 }
 
-// Rate of the state for loads that are known.
+// How the wind grows with height, 1/s: the slope of wind_at.
 template <class S, class T>
-void state_rate(const BodyState<S>& x, const Loads<S>& load, const AircraftModel<T>& a,
-                const Mat3<S>& R_BE, BodyState<S>& rate) {
+Vec3<S> wind_slope(const Wind<T>& wind, const S& height) {
+  Vec3<S> slope{S(wind.shear.x), S(wind.shear.y), S(wind.shear.z)};
+  const S z = height - wind.ground;
+  if (wind.logarithmic && value_of(z) > T(kLowestProfile) && value_of(z) < T(kHighestProfile)) {
+    const T reference = limited(wind.reference_height - wind.ground, T(kLowestProfile),
+                                T(kHighestProfile));
+    slope = slope + (T(1) / std::log(reference / wind.roughness) / z) * wind.steady;
+  }
+  return slope;
+}
+
+// How fast the angle of attack changes, rad/s; the gust's own rate of change is not known and left
+// out, wind that grows with height is in.
+template <class S, class T>
+S alpha_rate(const FlightState<S>& x, const AircraftModel<T>& a, const Place<S>& at,
+             const Loads<S>& load, const FlightState<S>& rate) {
   const Vec3<S> v{x[7], x[8], x[9]}, w{x[10], x[11], x[12]};
-  const Vec3<S> position = transposed_times(R_BE, v);
-  const Quaternion<S> turn =
-      attitude_rate(Quaternion<S>{x[3], x[4], x[5], x[6]}, w, S(1));  // pull 1/s: slow and stable
-  const Vec3<S> dv =
-      velocity_rate((T(1) / a.body.mass) * load.force, gravity_in_body(R_BE, S(a.gravity)), v, w);
-  const Vec3<S> dw = angular_acceleration(a.body, load.moment, w);
-  rate = {position.x, position.y, position.z, turn.w, turn.x, turn.y, turn.z,
-          dv.x,       dv.y,       dv.z,       dw.x,   dw.y,   dw.z};
+  const Vec3<S> dv{rate[7], rate[8], rate[9]};
+  const S climb = -dot(Vec3<S>{at.R_BN.row[0].z, at.R_BN.row[1].z, at.R_BN.row[2].z}, v);
+  const Vec3<S> dv_air =
+      dv + cross(w, v - load.v_air) - at.R_BN * (climb * wind_slope(a.wind, at.height));
+  const S plane = load.v_air.x * load.v_air.x + load.v_air.z * load.v_air.z;
+  if (!(plane > S(kLeastAirspeed * kLeastAirspeed))) return S(0);
+  return (load.v_air.x * dv_air.z - load.v_air.z * dv_air.x) / plane;
+}
+
+// Rates of all states, from the loads.
+template <class S, class T>
+void state_rate(const FlightState<S>& x, const FlightInput<S>& u, const AircraftModel<T>& a,
+                const Place<S>& at, const Loads<S>& load, FlightState<S>& rate) {
+  const StateLayout& layout = a.layout;
+  rate.length = layout.size;
+  if (!a.burns) {
+    body_rate(x, at, load, a.body, load.moment, rate);
+  } else {
+    const auto now = after_burning(a.body, a.fuel, x[layout.fuel]);
+    body_rate(x, at, load, now.body, load.moment - cross(now.shift, load.force), rate);
+  }
+  if (layout.size == kBodyStates) return;
+  for (int i = 0; i < a.engines.size(); ++i)
+    if (layout.engine[i] >= 0) rate[layout.engine[i]] = load.engine_rate[i];
+  if (layout.charge >= 0) rate[layout.charge] = load.current;
+  if (a.stalls) {
+    const S alpha_dot = alpha_rate(x, a, at, load, rate);
+    const int halves = separation_states(a.stall);
+    for (int i = 0; i < halves; ++i) {
+      const Wing wing = halves == 1 ? Wing::whole : i == 0 ? Wing::left : Wing::right;
+      const S alpha = halves == 1 ? load.flow.alpha
+                                  : local_alpha(a.stall, load.v_air, load.w_air, wing);
+      const int place = layout.stall[i];
+      rate[place] = separation_rate(a.stall, alpha, alpha_dot, x[place], wing);
+    }
+  }
+  for (int i = 0; i < kControls; ++i) {
+    const int place = layout.actuator[i];
+    const auto j = static_cast<unsigned>(i);
+    if (place >= 0) rate[place] = actuator_rate(a.actuators[j], x[place], u[j]);
+  }
+  if (layout.fuel >= 0)
+    rate[layout.fuel] = x[layout.fuel] < S(a.fuel.mass) ? load.fuel_flow : S(0);
+}
+
+// The outputs that belong to loads and to the rate that came of them.
+template <class S, class T>
+FlightOutput<S> outputs_of(const FlightState<S>& x, const AircraftModel<T>& a,
+                           const Loads<S>& load, const FlightState<S>& rate) {
+  Vec3<S> moment = load.engine_moment;
+  S mass(a.body.mass);
+  if (a.burns) {
+    const auto now = after_burning(a.body, a.fuel, x[a.layout.fuel]);
+    mass = now.body.mass;
+    moment = moment - cross(now.shift, load.engine_force);
+  }
+  const S k = S(1) / mass;
+  const auto& c = load.coefficients;
+  return {k * load.force.x, k * load.force.y, k * load.force.z, rate[10], rate[11], rate[12],
+          load.flow.V, load.flow.alpha, load.flow.beta, load.mach, load.air.density,
+          c[0], c[1], c[2], c[3], c[4], c[5],
+          load.engine_force.x, load.engine_force.y, load.engine_force.z,
+          moment.x, moment.y, moment.z, load.thrust};
 }
 
 // dx/dt = f(t, x, u, params); nothing in it depends on time.
 template <class S, class T>
-BodyState<S> derivative(T /*t*/, const BodyState<S>& x, const BodyInput<S>& u,
-                        const AircraftModel<T>& params) {
-  const Mat3<S> R_BE = earth_to_body(Quaternion<S>{x[3], x[4], x[5], x[6]});
-  BodyState<S> rate;
-  state_rate(x, loads(x, u, params, R_BE), params, R_BE, rate);
+FlightState<S> derivative(T /*t*/, const FlightState<S>& x, const FlightInput<S>& u,
+                          const AircraftModel<T>& params) {
+  const Place<S> at = place(x, params.earth, params.gravity);
+  FlightState<S> rate;
+  state_rate(x, u, params, at, loads(x, u, params, at), rate);
   return rate;
+}
+
+// The same with the outputs.
+template <class S, class T>
+void derivative_and_outputs(const FlightState<S>& x, const FlightInput<S>& u,
+                            const AircraftModel<T>& params, FlightState<S>& rate,
+                            FlightOutput<S>& y) {
+  const Place<S> at = place(x, params.earth, params.gravity);
+  const Loads<S> load = loads(x, u, params, at);
+  state_rate(x, u, params, at, load, rate);
+  y = outputs_of(x, params, load, rate);
 }
 
 }  // namespace alula

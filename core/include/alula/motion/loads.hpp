@@ -1,0 +1,149 @@
+#pragma once
+// What acts on the aircraft at one instant, gravity apart: air, aerodynamics, engines.
+#include "alula/motion/aircraft_model.hpp"
+#include "alula/motion/atmosphere.hpp"
+
+namespace alula {
+
+// Forces and moments in body axes; moments about the center of gravity as loaded.
+template <class S>
+struct Loads {
+  Air<S> air;
+  Vec3<S> v_air, w_air;  // velocity (m/s) and rates (rad/s) against the air, body axes
+  FlowAngles<S> flow;
+  S mach;
+  std::array<S, kCoefficients> coefficients;  // as the model gives them, stall included
+  Vec3<S> force, moment;                      // of all
+  Vec3<S> engine_force, engine_moment;        // of the engines alone
+  S thrust;                                   // N, sum over the engines along their directions
+  S engine_rate[kMaxEngines];                 // of the engines' states
+  S current, fuel_flow;                       // A, kg/s
+};
+
+// Below this airspeed (m/s) there are no flow angles, and no aerodynamic force either.
+inline constexpr double kLeastAirspeed = 1e-3;
+
+// A control as the aircraft has it: where there is an actuator, its position.
+template <class S, class T>
+const S& control(const FlightState<S>& x, const FlightInput<S>& u, const AircraftModel<T>& a,
+                 int i) {
+  const int at = a.layout.actuator[i];
+  return at < 0 ? u[static_cast<unsigned>(i)] : x[at];
+}
+
+// Adds to the coefficients what separated flow takes. sine, cosine: of the angle of attack.
+template <class S, class T>
+void add_stall(const FlightState<S>& x, const AircraftModel<T>& a, const S& sine, const S& cosine,
+               Loads<S>& out) {
+  const S &left = x[a.layout.stall[0]], &right = x[a.layout.stall[1]];
+  const StallIncrements<S> more =
+      separation_states(a.stall) == 1
+          ? stall_increments(a.stall, out.flow.alpha, left)
+          : stall_increments(a.stall, out.flow.alpha,
+                             local_alpha(a.stall, out.v_air, out.w_air, Wing::left),
+                             local_alpha(a.stall, out.v_air, out.w_air, Wing::right), left, right,
+                             a.b);
+  auto& C = out.coefficients;
+  if (a.stability_axes) {
+    C[0] += more.CD;
+    C[2] += more.CL;
+  } else {
+    C[0] += more.CL * sine - more.CD * cosine;
+    C[2] -= more.CL * cosine + more.CD * sine;
+  }
+  C[3] += more.Cl;
+  C[4] += more.Cm;
+  C[5] += more.Cn;
+}
+
+// Adds the aerodynamic force and moment.
+template <class S, class T>
+void add_aerodynamics(const FlightState<S>& x, const FlightInput<S>& u, const AircraftModel<T>& a,
+                      Loads<S>& out) {
+  using std::sqrt;
+  const Vec3<S>&v = out.v_air, &w = out.w_air;
+  const S speed_squared = dot(v, v);
+  if (!(speed_squared > S(kLeastAirspeed * kLeastAirspeed))) {
+    out.flow = {S(0), S(0), S(0)};
+    out.mach = S(0);
+    for (S& c : out.coefficients) c = S(0);
+    return;
+  }
+  out.flow = flow_angles(v);
+  out.mach = out.flow.V / out.air.speed_of_sound;
+
+  const S half_over_V = S(0.5) / out.flow.V;
+  const S span = half_over_V * a.b, chord = half_over_V * a.c;
+  S slots[kMaxSlots];
+  slots[kOne] = S(1);
+  slots[kV] = out.flow.V;
+  slots[kAlpha] = out.flow.alpha;
+  slots[kBeta] = out.flow.beta;
+  slots[kPhat] = w.x * span;
+  slots[kQhat] = w.y * chord;
+  slots[kRhat] = w.z * span;
+  for (int i = 0; i < kControls; ++i) slots[kDe + i] = control(x, u, a, i);
+  slots[kMach] = out.mach;
+  fill_slots(a.table, slots, a.lookups);
+  auto& C = out.coefficients;
+  C = coefficients(a.table, a.values.data(), slots);
+
+  const S plane = sqrt(v.x * v.x + v.z * v.z);
+  const bool along_y = !(plane > S(kLeastAirspeed));  // then alpha is taken as zero
+  const S cosine = along_y ? S(1) : v.x / plane, sine = along_y ? S(0) : v.z / plane;
+  if (a.stalls) add_stall(x, a, sine, cosine, out);
+  S CX = C[0], CZ = C[2];
+  if (a.stability_axes) {
+    CX = C[2] * sine - C[0] * cosine;
+    CZ = -(C[2] * cosine) - C[0] * sine;
+  }
+  const S pressure_area = (S(0.5) * out.air.density * speed_squared) * a.S;
+  const Vec3<S> aero{pressure_area * CX, pressure_area * C[1], pressure_area * CZ};
+  const Vec3<S> about_reference{pressure_area * a.b * C[3], pressure_area * a.c * C[4],
+                                pressure_area * a.b * C[5]};
+  out.force = out.force + aero;
+  out.moment = out.moment + about_reference + cross(a.reference_point, aero);
+}
+
+// Adds what the engines do. w: rates against inertial space.
+template <class S, class T>
+void add_engines(const FlightState<S>& x, const FlightInput<S>& u, const AircraftModel<T>& a,
+                 const Vec3<S>& w, const S& height, Loads<S>& out) {
+  const Vec3<S> none{S(0), S(0), S(0)};
+  out.engine_force = out.engine_moment = none;
+  out.thrust = out.current = out.fuel_flow = S(0);
+  if (a.engines.size() == 0) return;
+  const S& throttle = control(x, u, a, kControls - 1);
+  const S charge = a.layout.charge < 0 ? S(0) : x[a.layout.charge];
+  for (int i = 0; i < a.engines.size(); ++i) {
+    const int at = a.layout.engine[i];
+    const auto one = engine_loads(a.engines[i], at < 0 ? S(0) : x[at], throttle, u[kThrustInput],
+                                  out.air, out.mach, height, out.v_air, w, charge);
+    out.engine_force = out.engine_force + one.force;
+    out.engine_moment = out.engine_moment + one.moment;
+    out.engine_rate[i] = one.state_rate;
+    out.thrust += one.thrust;
+    out.current += one.current;
+    out.fuel_flow += one.fuel_flow;
+  }
+  out.force = out.force + out.engine_force;
+  out.moment = out.moment + out.engine_moment;
+}
+
+template <class S, class T>
+Loads<S> loads(const FlightState<S>& x, const FlightInput<S>& u, const AircraftModel<T>& a,
+               const Place<S>& at) {
+  const Vec3<S> v{x[7], x[8], x[9]}, w{x[10], x[11], x[12]};
+  const Vec3<S> gust{u[kGustInput], u[kGustInput + 1], u[kGustInput + 2]};
+  const Vec3<S> gust_rates{u[kGustInput + 3], u[kGustInput + 4], u[kGustInput + 5]};
+  Loads<S> out;
+  out.air = standard_atmosphere(at.height);
+  out.v_air = v - at.R_BN * wind_at(a.wind, at.height) - gust;
+  out.w_air = w - at.earth_rate - gust_rates;
+  out.force = out.moment = {S(0), S(0), S(0)};
+  add_aerodynamics(x, u, a, out);
+  add_engines(x, u, a, w, at.height, out);
+  return out;
+}
+
+}  // namespace alula
