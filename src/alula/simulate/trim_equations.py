@@ -150,7 +150,7 @@ def rest(
 
 def power_input(airframe: Airframe) -> str:
     """'dt' where an engine answers a throttle, 'thrust' where thrust is given."""
-    kinds = {engine.kind for engine in getattr(airframe, "engines", ())}
+    kinds = {engine.kind for engine in airframe.engines}
     return "dt" if kinds - {"given"} else "thrust"
 
 
