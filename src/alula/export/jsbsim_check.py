@@ -19,7 +19,7 @@ from alula.export.jsbsim_engine import THRUST
 from alula.export.jsbsim_property import COMMANDS, FT, PROPERTIES, norm_command
 from alula.export.jsbsim_write import jsbsim_name, limits_of
 from alula.model import AeroModel
-from alula.simulate import Airframe, Condition, Trim, fly, trim
+from alula.simulate import Airframe, Condition, SimulatedFlight, Trim, fly, trim
 
 V_TOLERANCE = 0.2  # m/s
 ANGLE_TOLERANCE = float(np.radians(0.1))
@@ -92,8 +92,9 @@ def compare_jsbsim(
 ) -> tuple[Comparison, ...]:
     """Fly an elevator doublet and a rudder doublet from trim in both, `duration` s each.
 
-    folder: JSBSim's aircraft path. Alula flies over the turning WGS-84 Earth, as JSBSim does.
-    Raises BadInput where there is no trim, or JSBSim does not take the file.
+    An aircraft whose model has no rudder flies the ailerons instead. folder: JSBSim's aircraft
+    path. Alula flies over the turning WGS-84 Earth, as JSBSim does. Raises BadInput where there is
+    no trim, or JSBSim does not take the file.
     """
     require_jsbsim()
     airframe = replace(airframe, earth="wgs84")
@@ -101,9 +102,11 @@ def compare_jsbsim(
     condition = replace(condition, place=(_LATITUDE, 0.0))
     limits = limits_of(aircraft)
     entry = trim(airframe, model, condition, limits=limits)
-    t = np.arange(round(duration / _DT) + 1) * _DT
+    t: Array = np.arange(round(duration / _DT) + 1, dtype=np.float64) * _DT
     out = []
-    for control, size in (("de", 0.05), ("dr", 0.08)):
+    used = {v for _, term in model.terms for f in term.factors for v in f.variables}
+    lateral = ("dr", 0.08) if "dr" in used or "da" not in used else ("da", 0.02)
+    for control, size in (("de", 0.05), lateral):
         low, high = limits[control]
         base = entry.controls[control]
         size = min(size, 0.5 * (high - base), 0.5 * (base - low))
@@ -112,7 +115,7 @@ def compare_jsbsim(
         shape -= np.where((t >= 1.0 + step) & (t < 1.0 + 2.0 * step), 1.0, 0.0)
         controls = {n: np.full(len(t), x) for n, x in entry.controls.items()}
         controls[control] = base + size * shape
-        name = {"de": "elevator doublet", "dr": "rudder doublet"}[control]
+        name = {"de": "elevator", "dr": "rudder", "da": "aileron"}[control] + " doublet"
         out.append(_flown_twice(name, aircraft, airframe, model, folder, entry, t, controls))
     return tuple(out)
 
@@ -157,10 +160,9 @@ def _flown_twice(
     return Comparison(name, t, ours, theirs, difference)
 
 
-def _initial(flight: object) -> dict[str, float]:
+def _initial(f: SimulatedFlight) -> dict[str, float]:
     """JSBSim's initial conditions: place, attitude, velocity against the air, rates."""
-    f = flight
-    m, place = f.motion, f.position[0]  # type: ignore[attr-defined]
+    m, place = f.motion, f.position[0]
     phi, theta, psi = (float(x[0]) for x in (m.phi, m.theta, m.psi))
     # Rates are against the turning Earth there: its own rate, turned into the body, goes off.
     north, down = _EARTH_RATE * np.cos(place[0]), -_EARTH_RATE * np.sin(place[0])
@@ -169,7 +171,7 @@ def _initial(flight: object) -> dict[str, float]:
     z0 = c * np.sin(theta) + down * np.cos(theta)
     y = s * np.cos(phi) + z0 * np.sin(phi)
     z = z0 * np.cos(phi) - s * np.sin(phi)
-    u, v, w = (f.air_velocity[0] / FT).tolist()  # type: ignore[attr-defined]
+    u, v, w = (f.air_velocity[0] / FT).tolist()
     return {
         "ic/lat-geod-rad": float(place[0]),
         "ic/long-gc-rad": float(place[1]),
@@ -191,9 +193,14 @@ def _states(airframe: Airframe, at: Mapping[str, float]) -> dict[str, float]:
 
     at: Alula's further states by name.
     """
-    turning = [i for i, e in enumerate(airframe.engines) if e.kind == "piston"]
-    speeds = [x for n, x in at.items() if n.startswith("omega")]
-    out = {f"alula/engine[{i}]/omega-rad_s": x for i, x in zip(turning, speeds, strict=True)}
+    out: dict[str, float] = {}
+    for key, state, kinds in (
+        ("omega", "omega-rad_s", ("piston", "electric")),
+        ("power", "power", ("turbofan",)),
+    ):
+        having = [i for i, e in enumerate(airframe.engines) if e.kind in kinds]
+        values = [x for n, x in at.items() if n.startswith(key)]
+        out |= {f"alula/engine[{i}]/{state}": x for i, x in zip(having, values, strict=True)}
     out |= {PROPERTIES[n]: at[n] for n in airframe.actuators}
     sides = {"X": "alula/stall/X", "X_left": "alula/stall-left/X", "X_right": "alula/stall-right/X"}
     return out | {p: at[n] for n, p in sides.items() if n in at}
