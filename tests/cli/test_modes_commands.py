@@ -126,16 +126,20 @@ def test_requirements_are_judged_with_their_edition() -> None:
     assert found["n_alpha"] > 0.0
 
 
-def test_a_requirement_asked_for_and_missed_fails() -> None:
-    """The X8's short period is too quick for a light piloted airplane: level 3 of CAP at best."""
-    x8 = (AIRCRAFT / "x8.toml", "--V", 18, "--h", 500, "--category", "C")
-    plain = alula("modes", *x8, "--json", "-")
-    assert plain.code == 0
-    asked = alula("modes", *x8, "--against", "cs23", "--json", "-")
-    missed = [r for r in asked.envelope["result"]["requirements"]
-              if r["edition"].startswith("CS-23") and r["verdict"] == "not met"]  # fmt: skip
-    assert asked.code == (1 if missed else 0)
-    assert len(asked.messages("requirement_missed")) == len(missed)
+def test_a_requirement_asked_for_and_missed_fails(tmp_path: Path) -> None:
+    """Yaw damping of the wrong sign: the Dutch roll grows, which CS-23.181(b) forbids."""
+    text = (AIRCRAFT / "sportstar_aero.toml").read_text()
+    old = next(line for line in text.splitlines() if line.startswith("Cn_r ="))
+    model = tmp_path / "growing.toml"
+    model.write_text(text.replace(old, "Cn_r = 0.3"))
+    words = (*POINT, "--model", model)
+    assert run("modes", *words).code == 0  # nobody asked
+    asked = run("modes", *words, "--against", "cs23")
+    assert asked.code == 1
+    assert asked.envelope["status"] == "check_failed"
+    missed = [m["where"] for m in asked.messages("requirement_missed")]
+    assert missed == ["CS-23 Amendment 4 (2015), 23.181(b)"]
+    assert run("modes", *POINT, "--against", "cs23").code == 0
 
 
 def test_in_a_turn_nothing_is_judged() -> None:
