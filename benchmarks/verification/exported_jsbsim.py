@@ -31,5 +31,5 @@ def exported_jsbsim(quick: bool) -> tuple[str, bool]:
             f"{c.maneuver}: V {c.difference['V']:.2g} m/s, worst angle {worst} "
             f"{np.degrees(c.difference[worst]):.2g} deg"
         )
-    remains = "what remains: JSBSim's integrators of low order at 1 ms, controls held over a step"
+    remains = "what remains is of first order in JSBSim's step, here 1 ms"
     return "; ".join((*words, remains)), all(c.passed for c in done.comparisons)

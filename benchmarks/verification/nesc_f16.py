@@ -2,7 +2,12 @@
 
 NASA/TM-2015-218675. The case flies straight and level at 10013 ft with controls and throttle held
 where they trim; they are not recorded and are solved for from the recorded initial state. Sim 04
-records moments about the center of mass, sim 02 about the moment reference center.
+records moments about the center of mass, sim 02 about the moment reference center; that the center
+of mass lies at 25 % follows from sim 02's moment over its force.
+
+The flight that is judged starts from sim 04's state. Sim 02's own start is flown too and shown: its
+side force differs from the one its recorded sideslip gives, and its heading then goes another way.
+Why is not known; its other forces and moments agree to 5e-5.
 """
 
 from __future__ import annotations
@@ -173,6 +178,8 @@ def nesc_f16(quick: bool) -> tuple[str, bool]:
         turned = float(np.linalg.norm(moment - M) / np.linalg.norm(wanted) / 11.32)
         worst[n] = max(off, turned)
         words.append(f"sim {n} force {off:.1e}, moment {turned:.1e}")
+        if n == "02":
+            words.append(f"of it side force {force[1]:.2f} for {wanted[1]:.2f} lbf")
     x = recorded_start(recorded["04"])
     controls, _, _ = trimmed(plane, x)
     gaps = beside(flown(plane, x, controls), recorded)
@@ -180,6 +187,14 @@ def nesc_f16(quick: bool) -> tuple[str, bool]:
         f"{n} {d:.2g} {'ft' if n == 'altitude' else 'deg'} ({100 * part:.2g} % of the spread)"
         for n, (d, part) in gaps.items()
     ]
-    # sim 04 trims as we do; sim 02 ends its own trim at 5e-5 of the force (its sideslip)
+    x = recorded_start(recorded["02"])
+    again = flown(plane, x, trimmed(plane, x)[0])
+    apart = {
+        n: float(np.max(abs(v - recorded["02"][_COLUMNS[n]].to_numpy()[: len(v)])))
+        for n, v in again.items()
+    }
+    shown = ", ".join(f"{n} {d:.2g}" for n, d in apart.items())
+    words.append(f"shown: from sim 02's own start, apart from sim 02 by {shown} (ft, deg)")
+    # Bounds of the order found: density differs by 5e-7 from sim 04's, 4e-6 from sim 02's.
     good = worst["04"] < 2e-6 and worst["02"] < 1e-4 and all(p <= 1.0 for _, p in gaps.values())
     return "; ".join(words), good

@@ -151,7 +151,7 @@ def test_every_kind_of_factor_and_both_axes(tmp_path: Path) -> None:
     done = export_jsbsim(aircraft, airframe, rich, tmp_path)
     for c in done.comparisons:
         assert c.passed
-        # the speed of sound, and so the Mach number of one table, differs in the sixth digit
+        # one table is over Mach number, which takes the speed of sound from each one's atmosphere
         assert max(abs(c.theirs[n][0] - c.ours[n][0]) for n in rich.coefficients) < 1e-7
 
 

@@ -23,7 +23,7 @@ from alula.simulate import Airframe
 _SEA_LEVEL = 1.225  # kg/m3
 _POWER_LOSS = 1.0 / 7.55  # Gagg and Ferrar, SAE Journal 34, 1934
 _SLOW = 5.0  # rad/s: below, friction fades; the core's kFrictionSpeed
-_SAMPLES = 400  # of a curve between its ends: the chords err by less than 1e-5 of its range
+_SAMPLES = 400  # of a curve between its ends: the SportStar's chords err by up to 2e-5 of its range
 _FAR = 100.0  # spans
 
 
