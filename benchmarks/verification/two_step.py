@@ -276,7 +276,7 @@ def run(path: Path, seed: int, filter_: str = "ekf", every: int = 1, end: float 
     )
 
 
-def _inside(total: Array, freedom: int) -> float:
+def share_inside(total: Array, freedom: int) -> float:
     """Share of the times at which the summed NEES lies within its 95 % bounds."""
     low, high = chi2.ppf([0.025, 0.975], freedom)
     return float(np.mean((total > low) & (total < high)))
@@ -297,13 +297,13 @@ def judge(outcomes: Mapping[str, Iterable[Outcome]]) -> Verdict:
             unobservable |= {f"{recording} {name}" for name in outcome.unobservable}
         freedom = sum(o.freedom for o in runs)
         total = np.sum([o.nees for o in runs], axis=0)[runs[0].times > 10.0]
-        inside[recording] = _inside(total, freedom)
+        inside[recording] = share_inside(total, freedom)
         whole, all_freedom = whole + total, all_freedom + freedom
         ratio[recording] = float(np.mean(total) / freedom)
     pooled = [hit for each in hits.values() for hit in each]
     return Verdict(
         float(np.mean(pooled)),
-        _inside(whole, all_freedom),
+        share_inside(whole, all_freedom),
         {name: float(np.mean(each)) for name, each in hits.items()},
         {name: float(np.mean(each)) for name, each in errors.items()},
         inside,

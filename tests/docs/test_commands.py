@@ -110,7 +110,9 @@ def test_python_page(tmp_path: Path, monkeypatch) -> None:
     assert (tmp_path / "demo.html").exists()
 
 
-@pytest.mark.parametrize("command", ["new", "check", "identify", "schema"])
+@pytest.mark.parametrize(
+    "command", ["new", "check", "identify", "validate", "trim", "linearize", "modes", "schema"]
+)
 def test_every_option_is_on_the_page(command: str) -> None:
     page = (ROOT / "docs/command_line.md").read_text()
     said = run(["alula", command, "--help"], ROOT).stdout

@@ -6,8 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given as given_text
+from hypothesis import settings
+from hypothesis import strategies as st
 
 from alula.base.messages import BadInput
+from alula.export.daveml_import import import_daveml
 from alula.export.daveml_read import parse_daveml, read_daveml
 from data import data
 from export.daveml_texts import REFERENCE, file, given, math, output, table
@@ -153,3 +157,20 @@ def test_circles_and_missing_inputs_are_named() -> None:
         model.evaluate({})
     with pytest.raises(BadInput, match="'b2'"):
         model.evaluate({"a": 1.0, "b2": 2.0})
+
+
+WHOLE = file(
+    REFERENCE, ALPHA, T, output("o", "<apply><times/><ci>a</ci><ci>t</ci></apply>"), table("a")
+)
+
+
+@given_text(st.integers(0, len(WHOLE) - 1), st.integers(1, 12), st.text(max_size=6))
+@settings(max_examples=300, deadline=None)
+def test_a_damaged_file_is_read_or_refused(at: int, cut: int, put: str) -> None:
+    damaged = WHOLE[:at] + put + WHOLE[at + cut :]
+    try:
+        model = parse_daveml(damaged)
+        model.check()
+        import_daveml(model)
+    except BadInput:
+        pass

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import hashlib
-import re
 import time
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
-from alula.base.messages import Message, note, refuse
+from alula.base.messages import Message, note, refuse, warn
 from alula.base.provenance import provenance
 from alula.campaign.check import Checked, Progress, check_project
 from alula.campaign.job import (
@@ -22,7 +21,8 @@ from alula.campaign.job import (
     _models,
     coefficient_data,
 )
-from alula.flight import Flight, Maneuver
+from alula.campaign.learned import LEARNED, learned_from, seen_by
+from alula.flight import Maneuver
 from alula.identify import CoefficientData, identified_model
 from alula.identify.coefficients import Reference as DataReference
 from alula.identify.coefficients import regressor_variables
@@ -32,11 +32,9 @@ from alula.reconstruct.transfer import engines_on
 from alula.report import ReportInput
 from alula.simulate import airframe_of
 from alula.validate import Case, Validation, validate
-from alula.validate.result import Seen
 from alula.validate.validate import DRAWS, Trim
 
-LEARNED = "learned from"  # key of a model's provenance
-_WINDOW = re.compile(r"\[([0-9a-f]{12}), (\S+) to (\S+) s\]")
+UNEQUAL = 0.02  # of the sum of thrusts, mean difference of an engine from the others
 
 
 @dataclass(frozen=True)
@@ -111,11 +109,15 @@ def run_validation(
         source, sha256 = str(model), hashlib.sha256(model.read_bytes()).hexdigest()
         messages += tuple(_reference(given, checked, str(model)))
     stamps.append(time.perf_counter())
+    ids = {m.id for m in chosen}
     cases = [
         _case(checked, segment, item, given)
         for segment, item in zip(reconstruction.segments, data, strict=True)
-        if segment.maneuver.id in {m.id for m in chosen}
+        if segment.maneuver.id in ids
     ]
+    messages += tuple(
+        m for s in reconstruction.segments if s.maneuver.id in ids for m in _thrust(checked, s)
+    )
     result = validate(
         given,
         cases,
@@ -158,38 +160,6 @@ def report_of_validation(done: ValidationJob, date: str, seed: int | None) -> Re
             "model_origin": done.model.provenance,
         },
     )
-
-
-def learned_from(data: Iterable[CoefficientData], flights: Mapping[str, Flight]) -> str:
-    """The windows that a model is estimated from, by the hash of their log, for its provenance.
-
-    'elevator [1f0c5a…, 0.0 to 25.0 s]; ...': twelve digits of the SHA-256 of the log's file.
-    """
-    parts = []
-    for item in data:
-        m = item.maneuver
-        for file in flights[m.log].files:
-            parts.append(f"{m.id} [{file.sha256[:12]}, {m.start!r} to {m.end!r} s]")
-    return "; ".join(parts)
-
-
-def seen_by(model: AeroModel, maneuver: Maneuver, flight: Flight) -> Seen:
-    """Whether the model was estimated from samples of this maneuver, by its provenance.
-
-    A model that does not name its windows but the hashes of its logs has seen all of them; one
-    that names neither leaves it unknown.
-    """
-    hashes = {file.sha256 for file in flight.files}
-    if LEARNED in model.provenance:
-        for sha, start, end in _WINDOW.findall(model.provenance[LEARNED]):
-            same = any(h.startswith(sha) for h in hashes)
-            if same and float(start) < maneuver.end and float(end) > maneuver.start:
-                return "yes"
-        return "no"
-    known = {v for v in model.provenance.values() if re.fullmatch(r"[0-9a-f]{64}", v)}
-    if not known:
-        return "unknown"
-    return "yes" if hashes & known else "no"
 
 
 def _held_out(checked: Checked, only: Sequence[str]) -> Checked:
@@ -259,6 +229,29 @@ def _reference(model: AeroModel, checked: Checked, path: str) -> list[Message]:
             do="Take the model of this aircraft, or correct the reference geometry.",
         )
     return []
+
+
+def _thrust(checked: Checked, segment: Segment) -> list[Message]:
+    """A warning where engines pull unequally: the simulator is given their sum, shared evenly."""
+    aircraft = checked.aircraft_of(segment.maneuver.log)
+    flight = checked.flights[segment.maneuver.log]
+    forces = engines_on(flight, aircraft, segment.motion.t)
+    if len(forces) < 2:
+        return []
+    each = np.array(list(forces.values()))
+    total = np.abs(each.sum(axis=0)).mean()
+    off = float(np.abs(each - each.mean(axis=0)).mean())
+    if total == 0.0 or off <= UNEQUAL * total:
+        return []
+    return [
+        warn(
+            "unequal_thrust",
+            where=f"maneuver {segment.maneuver.id}",
+            expected="engines that pull alike",
+            found=f"thrusts that differ from their mean by {100.0 * off / total:.2g} % of the sum",
+            do="The sum was flown, shared evenly: the moment of the difference is missing.",
+        )
+    ]
 
 
 def _case(checked: Checked, segment: Segment, item: CoefficientData, model: AeroModel) -> Case:

@@ -11,6 +11,7 @@ import typer
 from alula.base.messages import refuse
 from alula.cli.check import check
 from alula.cli.contract import Command
+from alula.cli.export import export
 from alula.cli.fly import fly
 from alula.cli.identify import identify
 from alula.cli.linearize import linearize
@@ -28,7 +29,7 @@ app = typer.Typer(
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )
-for command in (new, check, identify, plan, fly, trim, linearize, modes, validate, schema):
+for command in (new, check, identify, plan, fly, trim, linearize, modes, validate, export, schema):
     app.command()(command)
 
 

@@ -166,7 +166,7 @@ def load(asked: Asked) -> Loaded:
         ),
         model,
         condition,
-        [_source(asked.aircraft), _source(path)],
+        [source_of(asked.aircraft), source_of(path)],
         radians(asked.flaps_deg),
         asked.anyway,
     )
@@ -197,7 +197,8 @@ def trim_result(found: Trim) -> dict[str, Any]:
     }
 
 
-def _source(path: Path) -> SourceFile:
+def source_of(path: Path) -> SourceFile:
+    """A file that was read whole, for the envelope."""
     from alula.base.files import sha256
     from alula.flight import SourceFile
 

@@ -225,7 +225,7 @@ def _write_report(job: Job, path: Path, command: Command) -> None:
 
 def _write_model(job: Job, path: Path, command: Command) -> None:
     from alula.base.provenance import provenance
-    from alula.campaign.validate import LEARNED, learned_from
+    from alula.campaign.learned import LEARNED, learned_from
     from alula.identify import identified_model
     from alula.model import Reference, save_model
 

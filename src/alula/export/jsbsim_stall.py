@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from xml.etree.ElementTree import Element, SubElement
 
-from alula.export.jsbsim_engine import add_state
 from alula.export.jsbsim_functions import add_function, op, prop, value
+from alula.export.jsbsim_machines import add_state
 from alula.export.jsbsim_property import FT
 from alula.model import AeroModel, Stall
 

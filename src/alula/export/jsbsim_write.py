@@ -40,9 +40,10 @@ def jsbsim_text(
 ) -> str:
     """The aircraft at one loading as JSBSim's XML.
 
-    airframe: mass properties of that loading. Coefficients are functions outside the axes, about
-    the reference point AERORP; commands become surface positions in rad; engines are functions
-    that make their forces and moments. Raises BadInput where JSBSim cannot hold the model.
+    airframe: mass properties, engines and actuators of that loading. Coefficients are functions
+    outside the axes, about the reference point AERORP; commands become surface positions in rad;
+    engines are functions that make their forces and moments. Raises BadInput where JSBSim cannot
+    hold the model.
     """
     root = Element("fdm_config", name=aircraft.name, version="2.0", release="BETA")
     _header(root, aircraft, model, author, date)
@@ -50,8 +51,8 @@ def jsbsim_text(
     _mass_balance(root, airframe)
     _ground_reactions(root, airframe, model)
     SubElement(root, "propulsion")
-    _controls(root, aircraft)
-    forces = add_engines(root, aircraft, airframe)
+    _controls(root, aircraft, airframe)
+    forces = add_engines(root, airframe)
     aerodynamics = SubElement(root, "aerodynamics")
     _variables(aerodynamics)
     add_coefficients(aerodynamics, model)
@@ -130,8 +131,8 @@ def _ground_reactions(root: Element, airframe: Airframe, model: AeroModel) -> No
             element.set("unit", unit)
 
 
-def _controls(root: Element, aircraft: Aircraft) -> None:
-    """Commands to positions in rad: limits, and lag and rate where the file states actuators."""
+def _controls(root: Element, aircraft: Aircraft, airframe: Airframe) -> None:
+    """Commands to positions in rad: limits, and lag and rate where the airframe has actuators."""
     control = SubElement(root, "flight_control", name="FCS")
     limits = limits_of(aircraft)
     # JSBSim makes this one for engines of its own only.
@@ -139,7 +140,7 @@ def _controls(root: Element, aircraft: Aircraft) -> None:
     for name, (command, factor) in COMMANDS.items():
         channel = SubElement(control, "channel", name=name)
         low, high = limits[name]
-        actuator = aircraft.actuators.get(name)
+        actuator = airframe.actuators.get(name)
         position = PROPERTIES[name]
         scaled = position if actuator is None else f"alula/{name}-commanded"
         part = SubElement(channel, "aerosurface_scale", name=f"alula/{name}-scale")
@@ -152,20 +153,31 @@ def _controls(root: Element, aircraft: Aircraft) -> None:
         SubElement(span, "min").text, SubElement(span, "max").text = repr(low), repr(high)
         SubElement(part, "output").text = scaled
         if actuator is not None:
-            _actuator(channel, name, actuator, scaled, position)
+            _actuator(control, channel, actuator, scaled, position)
 
 
-def _actuator(channel: Element, name: str, a: Actuator, command: str, position: str) -> None:
-    part = SubElement(channel, "actuator", name=f"alula/{name}-actuator")
-    SubElement(part, "input").text = command
-    if a.tau > 0.0:
-        SubElement(part, "lag").text = repr(1.0 / a.tau)
-    if np.isfinite(a.rate_limit):
-        SubElement(part, "rate_limit").text = repr(a.rate_limit)
-    if np.isfinite(a.low) and np.isfinite(a.high):
-        clip = SubElement(part, "clipto")
-        SubElement(clip, "min").text, SubElement(clip, "max").text = repr(a.low), repr(a.high)
-    SubElement(part, "output").text = position
+def _actuator(control: Element, channel: Element, a: Actuator, command: str, state: str) -> None:
+    """The position as a state: its rate is the error over tau, limited, none in the dead band.
+
+    JSBSim's own actuator lags and limits one behind the other, and means another dead band.
+    """
+    SubElement(control, "property", value="0").text = state
+    inside = op("max", op("min", prop(command), value(_finite(a.high))), value(_finite(a.low)))
+    error = op("difference", inside, prop(state))
+    if a.dead_band > 0.0:
+        half = 0.5 * a.dead_band
+        error = op("difference", error, op("max", op("min", error, value(half)), value(-half)))
+    rate = op("quotient", error, value(a.tau))
+    if np.isfinite(a.rate_limit) and a.rate_limit > 0.0:
+        rate = op("max", op("min", rate, value(a.rate_limit)), value(-a.rate_limit))
+    part = SubElement(channel, "fcs_function", name=f"alula/{state.rpartition('/')[2]}-next")
+    step = op("product", rate, prop("simulation/dt"))
+    SubElement(part, "function").append(op("sum", prop(state), step))
+    SubElement(part, "output").text = state
+
+
+def _finite(x: float) -> float:
+    return float(np.clip(x, -1e6, 1e6))
 
 
 def _variables(parent: Element) -> None:

@@ -17,7 +17,14 @@ import numpy as np
 
 from alula.base.arrays import Array, frozen
 from alula.base.messages import refuse
-from alula.simulate.coordinates import Earth, flight_names, flight_state, plant_state, tangent
+from alula.simulate.coordinates import (
+    BODY_STATES,
+    Earth,
+    flight_names,
+    flight_state,
+    plant_state,
+    tangent,
+)
 from alula.simulate.plant import (
     PlantMatrices,
     further_states,
@@ -169,16 +176,18 @@ def flight_matrices(
 ) -> tuple[Array, Array, Array, Array]:
     """A, B and rates f0 in flight states, and T, from the plant's matrices at x0 (12 + k,)."""
     T = tangent(x0, wind, earth)
-    body = slice(3, None)  # places may be millions of meters: solved apart
+    # T is block triangular: place from its own rows, in which positions of millions of meters may
+    # stand; then motion from the next ten; what follows is the same in both.
     place = np.linalg.inv(T[:3, 9:12])
+    motion, drift = T[3:BODY_STATES, :9], T[3:BODY_STATES, 9:12]
+    back = np.linalg.inv(motion.T @ motion) @ motion.T
 
     def solve(right: Array) -> Array:
-        # T is block triangular: place from its own three rows, then the rest without it.
-        out = np.empty((T.shape[1], *right.shape[1:]))
+        out = np.concatenate([right[3:12], right[:3], right[BODY_STATES:]])
         out[9:12] = place @ right[:3]
-        others = [i for i in range(T.shape[1]) if i not in (9, 10, 11)]
-        rest = right[body] - T[body, 9:12] @ out[9:12]
-        out[others] = np.linalg.lstsq(T[np.ix_(range(3, len(T)), others)], rest, rcond=None)[0]
+        rest = right[3:BODY_STATES] - drift @ out[9:12]
+        out[:9] = back @ rest
+        out[:9] += back @ (rest - motion @ out[:9])  # what the normal equations lost
         return out
 
     f0 = solve(found.f)

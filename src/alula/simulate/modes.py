@@ -193,7 +193,8 @@ def modes_of(
                 dict(zip(part.states, (complex(z) for z in shape), strict=True)),
             )
         )
-    found.sort(key=lambda m: (-abs(m.eigenvalue), m.family, m.eigenvalue.real))
+    # Eight digits: roots that differ by rounding alone stand in the order of their names.
+    found.sort(key=lambda m: (-float(f"{abs(m.eigenvalue):.8g}"), m.family, m.eigenvalue.real))
     return tuple(_with_own_names(found))
 
 

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from alula.base.arrays import Array
-from alula.simulate.coordinates import BODY_STATES, Earth, wind_from
+from alula.simulate.coordinates import Earth, wind_from
 
 INPUTS = (
     "de", "da", "dr", "df", "dt", "thrust", "ug", "vg", "wg", "pg", "qg", "rg",
@@ -36,19 +35,19 @@ class PlantMatrices:
 
 def further_states(plant: Any) -> tuple[str, ...]:
     """Names of the plant's states behind position, attitude, velocity and rates."""
-    return tuple(getattr(plant, "further_states", ()))
+    return tuple(plant.further_states)
 
 
 def plant_inputs(plant: Any) -> tuple[str, ...]:
     """Names of the plant's inputs, in its order: rad, throttle 0 to 1, N, m/s, rad/s."""
-    return INPUTS[: getattr(plant, "input_count", 6)]
+    return INPUTS[: plant.input_count]
 
 
 def plant_outputs(plant: Any) -> tuple[str, ...]:
     """Names of the plant's outputs: m/s2, rad/s2, m/s, rad, kg/m3, N, N m; C_0 to C_2 are CX CY CZ
     or, in stability axes, CD CY CL.
     """
-    return OUTPUTS[: getattr(plant, "output_count", 17)]
+    return OUTPUTS[: plant.output_count]
 
 
 def plant_rates(plant: Any, x: Array, u: Array) -> tuple[Array, Array]:
@@ -81,31 +80,7 @@ def settled(plant: Any, x: Array, u: Array) -> Array:
 
 
 def plant_matrices(plant: Any, x: Array, u: Array) -> PlantMatrices:
-    """Rates, outputs and Jacobians at state x (n,) and input u (m,), in the plant's own states."""
+    """Rates, outputs, exact Jacobians at state x (n,) and input u (m,), in the plant's states."""
     f, y = plant_rates(plant, x, u)
-    if hasattr(plant, "jacobian"):
-        return PlantMatrices(f, y, *plant.jacobian(np.ascontiguousarray(x), np.array(u)))
-
-    def at(z: Array) -> Array:
-        return np.concatenate(plant_rates(plant, z[: len(x)], z[len(x) :]))
-
-    z = np.concatenate([x, u])
-    speed = max(float(np.linalg.norm(x[7:10])), 1.0)
-    size = np.ones(len(z))
-    size[:3], size[7:10] = 1e3, speed
-    size[BODY_STATES : len(x)] = np.maximum(np.abs(x[BODY_STATES:]), 1.0)
-    size[len(x) + 5] = max(abs(float(u[5])), 1e3)
-    J = _sixth_order(at, z, 3e-3 * size)
-    n = len(x)
-    return PlantMatrices(f, y, J[:n, :n], J[:n, n:], J[n:, :n], J[n:, n:])
-
-
-def _sixth_order(f: Callable[[Array], Array], z: Array, steps: Array) -> Array:
-    """Central differences of sixth order: truncation step^6 / 140 of the seventh derivative."""
-    columns = []
-    for i, h in enumerate(steps):
-        e = np.zeros(len(z))
-        e[i] = h
-        first, second, third = (f(z + k * e) - f(z - k * e) for k in (1, 2, 3))
-        columns.append((45.0 * first - 9.0 * second + third) / (60.0 * h))
-    return np.stack(columns, axis=1)
+    A, B, C, D = plant.jacobian(np.ascontiguousarray(x), np.ascontiguousarray(u))
+    return PlantMatrices(f, y, A, B, C, D)

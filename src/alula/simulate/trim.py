@@ -19,10 +19,11 @@ from alula.base.messages import Message, warn
 from alula.model import AeroModel
 from alula.simulate.airframe import GRAVITY, Airframe, core_model
 from alula.simulate.condition import Condition, check_envelope
-from alula.simulate.coordinates import Earth, plant_state
+from alula.simulate.coordinates import plant_state
 from alula.simulate.plant import further_states, plant_outputs
 from alula.simulate.trim_failure import failure
 from alula.simulate.trim_solver import TOLERANCE, Problem
+from alula.simulate.wind import Wind
 
 
 @dataclass(frozen=True)
@@ -68,7 +69,7 @@ def trim(
     controls: Mapping[str, float] | None = None,
     envelope: Envelope | None = None,
     in_spite: bool = False,
-    wind: Array | None = None,
+    wind: Array | Wind | None = None,
     gravity: float = GRAVITY,
 ) -> Trim:
     """Trim an aircraft in a condition.
@@ -82,7 +83,7 @@ def trim(
     """
     said = check_envelope(condition, envelope, not in_spite) if envelope else ()
     plant = core_model(airframe, model, wind, gravity)
-    earth: Earth = getattr(airframe, "earth", "flat")
+    earth = airframe.earth
     bounds = dict(limits or {})
     if envelope is not None and envelope.alpha is not None and not in_spite:
         bounds.setdefault("alpha", envelope.alpha)
@@ -127,7 +128,7 @@ def trim_level(
     psi: float = 0.0,
     controls: dict[str, float] | None = None,
     limits: dict[str, tuple[float, float]] | None = None,
-    wind: Array | None = None,
+    wind: Array | Wind | None = None,
     gravity: float = GRAVITY,
 ) -> Trim:
     """Trim straight flight, wings level: V m/s, height h m, climb angle gamma rad.

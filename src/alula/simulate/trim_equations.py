@@ -92,17 +92,6 @@ class Equations:
         """Climb angle against the air, rad."""
         return float(np.arcsin(np.clip(_climb(names, values)[0], -1.0, 1.0)))
 
-    def guesses(self, first: Mapping[str, float], condition: Condition) -> list[Array]:
-        """Where to start: small angles of attack first, then larger ones."""
-        out = []
-        for alpha in (0.05, 0.0, 0.15, -0.05):
-            low, high = self.limits.get("alpha", (-inf, inf))
-            guess = {**first, "alpha": min(max(alpha, low), high)}
-            if "theta" in self.free:
-                guess["theta"] = condition.gamma + alpha * cos(condition.bank_guess)
-            out.append(np.array(list(guess.values())))
-        return out
-
 
 def rest(
     plant: Any,
@@ -110,8 +99,12 @@ def rest(
     airframe: Airframe,
     held: Mapping[str, float],
     earth: Earth,
+    alpha: float = 0.05,
+    power: float = 0.5,
 ) -> tuple[dict[str, float], Array]:
-    """All flight states and inputs by name, in order, at the first guess; the wind there, NED.
+    """All flight states and inputs by name, in order, at a guess; the wind there, NED.
+
+    power: throttle, or given thrust over twice the mass, m/s2.
 
     An input that shares its name with an actuator's position is called '<name>_command'.
     """
@@ -119,21 +112,22 @@ def rest(
     values = dict.fromkeys(flight_names(earth, further), 0.0)
     g, V = GRAVITY, condition.V
     bank, gamma = condition.bank_guess, condition.gamma
+    theta = gamma + alpha * cos(bank)
     turn = g * tan(bank) / (V * cos(gamma)) if condition.kind == "turn" else 0.0
     pull = (condition.load_factor_guess - cos(gamma)) * g / V if condition.kind == "pull_up" else 0
     values.update(
-        V=V, alpha=0.05, phi=bank, theta=gamma + 0.05, psi=condition.psi, h=condition.h,
-        p=-turn * sin(gamma + 0.05), q=turn * sin(bank) + pull, r=turn * cos(bank),
+        V=V, alpha=alpha, phi=bank, theta=theta, psi=condition.psi, h=condition.h,
+        p=-turn * sin(theta), q=turn * sin(bank) + pull, r=turn * cos(bank),
     )  # fmt: skip
     first, second = ("lat", "lon") if earth == "wgs84" else ("north", "east")
     values[first], values[second] = condition.place
-    power = power_input(airframe)
+    control = power_input(airframe)
     for name in plant_inputs(plant):
         key = f"{name}_command" if name in values else name
         values[key] = held.get(name, 0.0)
-        if name == power and name not in held:
-            half = 0.5 if name == "dt" else airframe.mass
-            values[key] = condition.power if condition.kind == "glide" else half
+        if name == control and name not in held:
+            guess = power if name == "dt" else 2.0 * power * airframe.mass
+            values[key] = condition.power if condition.kind == "glide" else guess
         if key != name:
             values[name] = values[key]
     for name in held:
@@ -156,7 +150,7 @@ def rest(
 
 def power_input(airframe: Airframe) -> str:
     """'dt' where an engine answers a throttle, 'thrust' where thrust is given."""
-    kinds = {engine.kind for engine in getattr(airframe, "engines", ())}
+    kinds = {engine.kind for engine in airframe.engines}
     return "dt" if kinds - {"given"} else "thrust"
 
 

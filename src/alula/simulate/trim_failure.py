@@ -81,6 +81,8 @@ def at_stop(found: Solution) -> dict[str, float]:
     values = dict(zip(found.names, found.values.tolist(), strict=True))
     out = {}
     for name in wanted.free:
+        if name.startswith(("X", "omega", "power")):
+            continue  # attached flow or an engine at rest is no stop
         low, high = wanted.limits[name]
         near = 1e-4 * wanted.scale[name]
         for limit in (low, high):

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -55,10 +56,11 @@ class Problem:
         earth: Earth,
     ) -> None:
         self.plant, self.condition, self.earth = plant, condition, earth
-        self.first, self.wind = rest(plant, condition, airframe, held, earth)
-        self.names = tuple(self.first)
+        self._guess = partial(rest, plant, condition, airframe, held, earth)
+        first, self.wind = self._guess()
+        self.names = tuple(first)
         self.n = len(self.names) - len(plant_inputs(plant))
-        start = np.array(list(self.first.values()))
+        start = np.array(list(first.values()))
         effect = self._linear(start)[2][:, self.n :]
         useful = {
             name
@@ -84,9 +86,13 @@ class Problem:
     def solve(self, wanted: Equations | None = None, start: Array | None = None) -> Solution:
         """Bounded least squares from several guesses, until one fits."""
         wanted = wanted or self.equations
-        guesses = [start] if start is not None else wanted.guesses(self.first, self.condition)
+        # A motor that would brake gives no thrust to climb on: more power, then.
+        guesses = [(0.05, 0.5), (0.05, 0.9), (0.0, 0.5), (0.15, 0.5), (-0.05, 0.9)]
         best: Solution | None = None
-        for guess in guesses:
+        for alpha, power in guesses[: 1 if start is not None else None]:
+            guess = start
+            if guess is None:
+                guess = np.array(list(self._guess(alpha, power)[0].values()))
             found = self._from(wanted, guess)
             if best is None or found.residual < best.residual:
                 best = found
@@ -113,31 +119,41 @@ class Problem:
             left, slope = wanted.residuals(self.names, outputs, values, f0, y, J, Jy)
             return left, slope[:, where] * scale
 
-        inside = 1e-6 * np.minimum(1.0, high - low)
-        z = np.clip(start[where] / scale, low + inside, high - inside)
-
         def left_at(z: Array) -> Array:
             return at(z)[0]
 
         def slope_at(z: Array) -> Array:
             return at(z)[1]
 
-        found = least_squares(
-            left_at, z, jac=slope_at, bounds=(low, high),
-            xtol=1e-12, ftol=1e-12, gtol=1e-12, max_nfev=60,
-        )  # fmt: skip
-        z = np.clip(found.x, low, high)
-        for _ in range(4):  # Newton from nearby, as far as the limits let it
-            left, slope = at(z)
-            if np.max(np.abs(left)) <= 1e-2 * TOLERANCE:
-                break
-            step = np.linalg.lstsq(slope, -left, rcond=None)[0]
-            following = np.clip(z + step, low, high)
-            if np.max(np.abs(at(following)[0])) >= np.max(np.abs(left)):
-                break
-            z = following
+        z = np.clip(start[where] / scale, low, high)
+        z = _newton(at, z, low, high, 10)
+        if np.max(np.abs(at(z)[0])) > TOLERANCE:
+            inside = 1e-6 * np.minimum(1.0, high - low)
+            z = np.clip(start[where] / scale, low + inside, high - inside)
+            z = least_squares(
+                left_at, z, jac=slope_at, bounds=(low, high),
+                xtol=1e-12, ftol=1e-12, gtol=1e-12, max_nfev=60,
+            ).x  # fmt: skip
+            z = _newton(at, np.clip(z, low, high), low, high, 4)
         values = full(z)
         values[np.abs(values) < 1e-13] = 0.0  # rounding: symmetric flight stays symmetric
         f0, y, J, Jy = self._linear(values)
         left, _ = wanted.residuals(self.names, outputs, values, f0, y, J, Jy)
         return Solution(wanted, self.names, values, f0, y, wanted.climb(self.names, values), left)
+
+
+def _newton(
+    at: Callable[[Array], tuple[Array, Array]], z: Array, low: Array, high: Array, steps: int
+) -> Array:
+    """Newton steps as far as the limits let them, while they lower the largest residual."""
+    left, slope = at(z)
+    for _ in range(steps):
+        size = np.max(np.abs(left))
+        if size <= 1e-2 * TOLERANCE or not np.isfinite(size):
+            break
+        following = np.clip(z + np.linalg.lstsq(slope, -left, rcond=None)[0], low, high)
+        left, slope = at(following)
+        if not np.max(np.abs(left)) < size:
+            break
+        z = following
+    return z

@@ -63,7 +63,7 @@ def fly_case(
     flown = _Flight(record, case.airframe, controls, gravity)
     columns = flown.fly(complete, len(record.t))
     n = _until(columns, record)
-    departed = float(record.t[n - 1]) if n < len(record.t) else None
+    departed = float(record.t[n]) if n < len(record.t) else None
     if departed is not None:
         messages.append(_departed(where, departed, record, columns))
     columns = {name: values[:n] for name, values in columns.items()}
@@ -253,7 +253,7 @@ def _as_recorded(where: str, model: AeroModel, lacking: tuple[str, ...]) -> Mess
 
 
 def _departed(where: str, at: float, record: Recording, columns: Mapping[str, Array]) -> Message:
-    k = min(len(columns["V"]) - 1, int(np.searchsorted(record.t, at)) + 1)
+    k = min(len(columns["V"]) - 1, int(np.searchsorted(record.t, at)))
     alpha, beta = np.degrees(columns["alpha"][k]), np.degrees(columns["beta"][k])
     return warn(
         "model_flight_diverged",

@@ -24,8 +24,8 @@ from alula.base.coloured import coloured_covariance
 FEWEST = 20  # samples
 VISIBLE = 20.0  # an oscillation of a twentieth of its first size has died out
 GROWTH = 5.0  # exponent over the stretch at most: a hundred and fifty times the first amplitude
-GRID = 400  # samples of each trace that the first, coarse search looks at
-FREQUENCIES, DAMPINGS = 60, (-0.1, 0.0, 0.05, 0.15, 0.3, 0.5)
+GRID = 200  # samples of each trace that the first, coarse search looks at
+FREQUENCIES, DAMPINGS = 20, (-0.1, 0.0, 0.05, 0.15, 0.3, 0.5)
 
 
 @dataclass(frozen=True)
@@ -105,7 +105,7 @@ def _fit(t: Array, traces: Mapping[str, Array]) -> Oscillation | None:
     slowest = -GROWTH / length
     starts = [
         np.array([w, max(d * w / np.sqrt(1.0 - d * d), slowest)])
-        for w in np.geomspace(low, min(high, 200.0 * low), FREQUENCIES)
+        for w in _frequencies(tau, np.column_stack(bent) / sizes, low, high)
         for d in DAMPINGS
     ]
     start = starts[int(np.argmin([np.sum(left(z, x, y) ** 2) for z in starts]))]
@@ -143,24 +143,44 @@ def _fit(t: Array, traces: Mapping[str, Array]) -> Oscillation | None:
     )
 
 
+def _frequencies(x: Array, bent: Array, low: float, high: float) -> Array:
+    """Where to begin, rad/s: about the peak of the common periodogram, and a few of every size."""
+    length = 4 * len(x)
+    power = np.sum(np.abs(np.fft.rfft(bent, length, axis=0)) ** 2, axis=1)
+    at = 2.0 * np.pi * np.arange(len(power)) * (len(x) - 1) / (length * x[-1])
+    inside = (at > low) & (at < high)
+    every = np.geomspace(low, min(high, 30.0 * low), FREQUENCIES)
+    if not inside.any():
+        return np.asarray(every)
+    peak = at[inside][int(np.argmax(power[inside]))]
+    return np.concatenate([every, peak * np.array([0.9, 0.97, 1.0, 1.03, 1.1])])
+
+
 def _covariance(
     x: Array, z: tuple[float, float], linear: Array, columns: Array, residual: Array
 ) -> Array:
-    """(2, 2) of frequency and decay; every trace is a block with linear parameters of its own."""
-    blocks = []
-    count = linear.shape[1]
+    """(2, 2) of frequency and decay.
+
+    The common estimate is the mean of those that each trace would give by itself, weighted by
+    their information, so that its covariance follows from theirs.
+    """
     w, s = z
     shrink = np.exp(-s * x)
-    for k in range(count):
+    own, _ = np.linalg.qr(columns)
+    total, spread = np.zeros((2, 2)), np.zeros((2, 2))
+    for k in range(linear.shape[1]):
         c, d = linear[2, k], linear[3, k]
         wave = shrink * (c * np.cos(w * x) + d * np.sin(w * x))
         turned = shrink * (d * np.cos(w * x) - c * np.sin(w * x))
-        jacobian = np.zeros((len(x), 2 + 4 * count))
-        jacobian[:, 0], jacobian[:, 1] = x * turned, -x * wave
-        jacobian[:, 2 + 4 * k : 6 + 4 * k] = columns
-        blocks.append((jacobian, residual[:, k]))
-    information = sum((j.T @ j for j, _ in blocks), np.zeros((2 + 4 * count,) * 2))
-    scale = np.sqrt(np.diag(information))
-    dispersion = np.linalg.pinv(information / np.outer(scale, scale)) / np.outer(scale, scale)
-    corrected: Array = coloured_covariance(blocks, dispersion).corrected[:2, :2]
-    return corrected
+        jacobian = np.column_stack([x * turned, -x * wave])
+        free = jacobian - own @ (own.T @ jacobian)  # of what the trace's own terms could imitate
+        regressors = np.column_stack([jacobian, columns])
+        scale = np.linalg.norm(regressors, axis=0)
+        regressors = regressors / scale
+        dispersion = np.linalg.pinv(regressors.T @ regressors)
+        alone = coloured_covariance([(regressors, residual[:, k])], dispersion).corrected
+        information = free.T @ free
+        total += information
+        spread += information @ (alone / np.outer(scale, scale))[:2, :2] @ information
+    weight = np.linalg.pinv(total)
+    return np.asarray(weight @ spread @ weight)
