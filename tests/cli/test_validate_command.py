@@ -173,6 +173,22 @@ def test_the_model_file_gives_the_same_and_knows_what_it_saw(
     assert said["level"] == "warning"
 
 
+def test_the_truth_flies_what_was_recorded_in_wind_with_noise_and_biases(demo_files: Path) -> None:
+    """Logs, reconstruction and flight in one: the model that made the demo's logs, flown anew."""
+    file = Path(__file__).parents[2] / "aircraft" / "sportstar_aero.toml"
+    words = ("--model", file, "--json", "-", "--draws", 0)
+    ran = alula("validate", demo_files / "demo.toml", *words)
+    found = Validated.model_validate(checked(ran, "validation", "ok").result)
+    assert {m.seen_by_estimate for m in found.maneuvers} == {"unknown"}
+    assert ran.messages("origin_unknown")
+    longitudinal, lateral = found.maneuvers
+    # sensor noise of 0.1 deg and 0.2 m/s, smoothed, on motions of some degrees and 10 m/s
+    for flown, names in ((longitudinal, ("V", "alpha", "q", "theta", "h")),
+                         (lateral, ("beta", "p", "r", "phi"))):  # fmt: skip
+        assert min(flown.channels[n].r2 or 0.0 for n in names) > 0.995
+    assert {row.verdict for row in found.evidence} == {"pass"}
+
+
 def test_maneuver_holds_out(demo_files: Path, tmp_path: Path) -> None:
     small = project(demo_files, tmp_path / "p", held_out=False)
     words = ("--json", "-", "--draws", 0)

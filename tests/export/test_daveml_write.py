@@ -135,6 +135,15 @@ def test_cubic_tables_are_refused() -> None:
         daveml_text(model, author="a", date="2026-01-02")
 
 
+def test_a_table_must_not_take_a_signals_name() -> None:
+    model = aero_model(
+        "m", {"CX": "b_ref(alpha)"}, {"CX_b_ref": 1.0}, Reference(1, 1, 1),
+        tables={"b_ref": lookup_table({"alpha": [0.0, 0.1]}, [0.0, 1.0])},
+    )  # fmt: skip
+    with pytest.raises(BadInput, match="b_ref"):
+        daveml_text(model, author="a", date="2026-01-02")
+
+
 def test_nothing_is_written_to_a_folder_that_is_not_there(tmp_path: Path) -> None:
     with pytest.raises(BadInput, match="output_not_writable"):
         export_daveml(rich_model(), tmp_path / "none" / "m.dml")

@@ -11,6 +11,7 @@ import pytest
 
 from alula.model import load_model
 from data import data
+from export.consumer import need_jsbsim
 
 AIRCRAFT = Path(__file__).parents[2] / "aircraft"
 MODEL = AIRCRAFT / "sportstar_aero.toml"
@@ -28,7 +29,7 @@ def export(*words: object) -> tuple[int, dict]:
 
 
 def test_jsbsim(tmp_path: Path) -> None:
-    pytest.importorskip("jsbsim", reason="JSBSim is not installed: pip install 'alula[export]'")
+    need_jsbsim()
     words = (MODEL, "--aircraft", AIRCRAFT / "sportstar.toml", "--to", "jsbsim", "--out", tmp_path)
     code, said = export(*words)
     assert (code, said["status"], said["schema"]) == (0, "ok", "alula.export/1")

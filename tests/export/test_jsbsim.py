@@ -21,9 +21,14 @@ from alula.export.jsbsim_write import jsbsim_text
 from alula.model import AeroModel, Reference, aero_model, load_model, lookup_table
 from alula.simulate import Airframe, Condition, airframe_of
 from data import data
+from export.consumer import need_jsbsim
 
-pytest.importorskip("jsbsim", reason="JSBSim is not installed: pip install 'alula[export]'")
 AIRCRAFT = Path(__file__).parents[2] / "aircraft"
+
+
+@pytest.fixture(autouse=True)
+def _jsbsim() -> None:
+    need_jsbsim()
 
 
 def sportstar(**options) -> tuple[Aircraft, Airframe, AeroModel]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -144,6 +145,19 @@ def test_file_gives_tables_and_stall_back(tmp_path: Path) -> None:
     assert back.terms == model.terms
     assert back.assumed == model.assumed
     assert model_text(back) == model_text(model)
+
+
+@pytest.mark.parametrize("hole", ["nan", "inf", "'x'", "[1.0]"])
+def test_a_hole_in_a_files_table_is_named(tmp_path: Path, hole: str) -> None:
+    save_model(model_with_tables(), tmp_path / "m.toml")
+    text = (tmp_path / "m.toml").read_text()
+    first = re.search(r"\[tables.\"cxq\"\](.*?)values = \[([^,]*),", text, re.S)
+    assert first is not None
+    damaged = text[: first.start(2)] + hole + text[first.end(2) :]
+    (tmp_path / "m.toml").write_text(damaged)
+    with pytest.raises(BadInput) as caught:
+        load_model(tmp_path / "m.toml")
+    assert caught.value.messages[0].where.endswith("m.toml, tables.cxq")
 
 
 def test_tables_that_differ_are_not_equal() -> None:

@@ -22,6 +22,10 @@ _HEAD = """<?xml version="1.0" encoding="UTF-8" standalone="no"?>
 _HATS = {"phat": ("p", "b"), "qhat": ("q", "c"), "rhat": ("r", "b")}
 _INPUT_OF = {meaning: (name, units, sign) for name, (meaning, units, sign) in INPUTS.items()}
 _OUTPUT_OF = {c: (name, sign) for name, (c, sign) in OUTPUTS.items()}
+# Identifiers that the file uses besides those of variables, parameters and tables.
+_OWN = (
+    {f"{k}_ref" for k in "Sbc"} | {f"mrc_{k}" for k in "xyz"} | {f"total_{c}" for c in _OUTPUT_OF}
+)
 
 
 @dataclass
@@ -33,7 +37,7 @@ class _Writer:
     def unique(self, text: str) -> str:
         """An XML identifier for a parameter's name."""
         base = re.sub(r"[^A-Za-z0-9_]", "_", text)
-        taken = {*self.ids.values(), *self.model.tables}
+        taken = {*self.ids.values(), *self.model.tables, *_OWN}
         out, k = base, 2
         while out in taken:
             out, k = f"{base}_{k}", k + 1
@@ -83,6 +87,15 @@ def daveml_text(model: AeroModel, *, author: str, date: str, cases: int = 20) ->
                 found=table.interpolation,
                 do="Tabulate it finely and make it linear.",
             )
+    clash = sorted(_OWN & model.tables.keys())
+    if clash:
+        raise refuse(
+            "daveml_names",
+            where=f"aerodynamic model '{model.name}', tables",
+            expected="names that the exported signals do not use",
+            found=", ".join(clash),
+            do="Rename the table.",
+        )
     root = Element("DAVEfunc", xmlns="http://daveml.org/2010/DAVEML")
     _header(root, model, author, date)
     writer = _Writer(model, root)

@@ -220,7 +220,7 @@ def _add_actuator(plant: Any, name: str, actuator: Actuator) -> None:
     finite = np.nan_to_num([actuator.low, actuator.high], posinf=1e300, neginf=-1e300)
     rate = actuator.rate_limit if np.isfinite(actuator.rate_limit) else 0.0  # 0: none
     plant.set_actuator(
-        CONTROLS.index(name), actuator.tau, rate, *map(float, finite), 0.5 * actuator.dead_band, 0.0
+        CONTROLS.index(name), actuator.tau, rate, *map(float, finite), actuator.dead_band, 0.0
     )
 
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from alula.validate.oscillation import Oscillation, fit_oscillation
-from alula.validate.requirement import Requirement, evidence_row
+from alula.validate.requirement import Requirement, evidence_row, follows
 from alula.validate.result import Criterion, Evidence, Flown, Verdict
 from alula.validate.windows import free_response
 
@@ -36,7 +36,7 @@ def oscillation_rows(
     names = [n for n in names if flown.channels[n].recorded]
     filled = [n for n in names if flown.channels[n].as_recorded]
     if filled:
-        return none(f"{', '.join(filled)} follow coefficients that were taken as recorded")
+        return none(follows(filled))
     if not names:
         return none("channels not recorded")
     measured = fit_oscillation(t, {n: flown.channels[n].measured[stretch] for n in names})

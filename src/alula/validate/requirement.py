@@ -37,3 +37,11 @@ def evidence_row(
         window=window,
         reason=reason,
     )
+
+
+def follows(channels: Sequence[str]) -> str:
+    """Why these channels prove nothing."""
+    many = (
+        "follow coefficients that were" if len(channels) > 1 else "follows a coefficient that was"
+    )
+    return f"{', '.join(channels)} {many} taken as recorded"

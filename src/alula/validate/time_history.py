@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from alula.base.arrays import Array
-from alula.validate.requirement import Requirement, evidence_row
+from alula.validate.requirement import Requirement, evidence_row, follows
 from alula.validate.result import Criterion, Evidence, Flown, Verdict
 from alula.validate.windows import find_input
 
@@ -53,7 +53,7 @@ def history_row(
     filled = [b.channel for b in bands if flown.channels[b.channel].as_recorded]
     bands = [b for b in bands if b.channel not in filled]
     if not bands:
-        why = f"{', '.join(filled)} follows a coefficient that was taken as recorded"
+        why = follows(filled)
         return evidence_row(flown, requirement, tolerance, (), "not_judged", window, why)
     inside = (flown.t >= window[0]) & (flown.t <= window[1])
     if int(inside.sum()) < 2:
