@@ -59,12 +59,13 @@ void evaluate(const AeroTable& bound, Vector values, Matrix variables, MatrixOut
 }  // namespace
 
 void bind_aero(nb::module_& m) {
-  nb::class_<AeroTable>(m, "TermTable",
-                        "An aerodynamic model as steps (operation, a, b, knot) or (operation, a,\n"
-                        "b, knot, c, table) and terms (coefficient, slot). Operations: 0 multiply,\n"
-                        "1 absolute, 2 ramp, 3 sign, 4 lookup of table number `table` at slots a,\n"
-                        "b, c (0 for axes it does not have). tables: (breakpoints of each axis,\n"
-                        "values row by row, cubic, continued by lines); their numbers are copied.")
+  nb::class_<AeroTable>(
+      m, "TermTable",
+      "An aerodynamic model as steps (operation, a, b, knot) or (operation, a,\n"
+      "b, knot, c, table) and terms (coefficient, slot). Operations: 0 multiply,\n"
+      "1 absolute, 2 ramp, 3 sign, 4 lookup of table number `table` at slots a,\n"
+      "b, c (0 for axes it does not have). tables: (breakpoints of each axis,\n"
+      "values row by row, cubic, continued by lines); their numbers are copied.")
       .def("__init__", &build, nb::arg("steps"), nb::arg("terms"),
            nb::arg("tables") = std::vector<TableArgument>())
       .def("evaluate", &evaluate, nb::arg("values"), nb::arg("variables"), nb::arg("out"),

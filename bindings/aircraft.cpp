@@ -42,6 +42,7 @@ void build(Aircraft* self, double mass, Matrix inertia, Vector geometry, Vector 
   std::memcpy(a.values.data(), values.data(), values.shape(0) * sizeof(double));
   self->lookups = table.lookups;
   a.lookups = table.lookups->views.data();
+  self->lay_out();
 }
 
 Engine<double> engine_at(EngineKind kind, const Vector& point, const Vector& direction) {
@@ -95,8 +96,9 @@ void add_electric(Aircraft& self, Vector point, Vector direction, double diamete
                   double most_regenerated_current) {
   auto engine = engine_at(EngineKind::electric, point, direction);
   engine.propeller = propeller(diameter, inertia, sense, J, CT, CP);
-  engine.electric = {k_V,           k_T,      no_load_current, resistance,              full_voltage,
-                     empty_voltage, capacity, most_current,    most_regenerated_current};
+  engine.electric = {k_V,        k_T,          no_load_current,
+                     resistance, full_voltage, empty_voltage,
+                     capacity,   most_current, most_regenerated_current};
   add(self, engine);
 }
 
@@ -161,15 +163,15 @@ void set_wind(Aircraft& self, Vector steady, Vector shear, double reference_heig
 
 std::vector<std::string> further_states(const Aircraft& self) {
   const auto& a = self.model;
-  std::vector<std::string> names(
-      static_cast<std::size_t>(a.layout.size - alula::kBodyStates));
+  std::vector<std::string> names(static_cast<std::size_t>(a.layout.size - alula::kBodyStates));
   const auto name = [&](int place, std::string what) {
     if (place >= 0) names[static_cast<std::size_t>(place - alula::kBodyStates)] = std::move(what);
   };
   const bool several = a.engines.size() > 1;
   for (int i = 0; i < a.engines.size(); ++i)
-    name(a.layout.engine[i], std::string(alula::has_propeller(a.engines[i].kind) ? "omega" : "power") +
-                                 (several ? "_" + std::to_string(i + 1) : ""));
+    name(a.layout.engine[i],
+         std::string(alula::has_propeller(a.engines[i].kind) ? "omega" : "power") +
+             (several ? "_" + std::to_string(i + 1) : ""));
   name(a.layout.charge, "charge");
   const bool split = a.stalls && alula::separation_states(a.stall) == 2;
   name(a.layout.stall[0], split ? "X_left" : "X");
@@ -188,8 +190,8 @@ void bind_aircraft(nb::module_& m) {
       "A rigid aircraft with its aerodynamic model, engines and what else has states.\n"
       "Positions are from the center of gravity, body axes, m; geometry: S, b, c.");
   c.def("__init__", &build, nb::arg("mass"), nb::arg("inertia"), nb::arg("geometry"),
-        nb::arg("reference_point"), nb::arg("gravity"), nb::arg("stability_axes"),
-        nb::arg("table"), nb::arg("values"), nb::arg("wgs84") = false)
+        nb::arg("reference_point"), nb::arg("gravity"), nb::arg("stability_axes"), nb::arg("table"),
+        nb::arg("values"), nb::arg("wgs84") = false)
       .def(
           "add_given",
           [](Aircraft& self, Vector point, Vector direction, double share) {
@@ -215,9 +217,9 @@ void bind_aircraft(nb::module_& m) {
            nb::arg("consumption"), nb::arg("angular_momentum"), nb::arg("sense"),
            nb::arg("idle_speed"),
            "A turbofan; tables over Mach number and height, as TermTable takes them.")
-      .def("set_actuator", &set_actuator, nb::arg("control"), nb::arg("tau"),
-           nb::arg("rate_limit"), nb::arg("low"), nb::arg("high"), nb::arg("dead_band"),
-           nb::arg("tau_down"), "The actuator of control 0 to 4: de da dr df dt.")
+      .def("set_actuator", &set_actuator, nb::arg("control"), nb::arg("tau"), nb::arg("rate_limit"),
+           nb::arg("low"), nb::arg("high"), nb::arg("dead_band"), nb::arg("tau_down"),
+           "The actuator of control 0 to 4: de da dr df dt.")
       .def("set_stall", &set_stall, nb::arg("a1"), nb::arg("alpha_star"), nb::arg("tau1"),
            nb::arg("tau2"), nb::arg("CL_alpha"), nb::arg("alpha_0"), nb::arg("CD_X"),
            nb::arg("Cm_X"), nb::arg("y_station"), nb::arg("alpha_star_difference"),

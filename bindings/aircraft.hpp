@@ -5,12 +5,12 @@
 
 struct Aircraft {
   alula::AircraftModel<double> model;
-  std::shared_ptr<Lookups> lookups;           // of the aerodynamic model
+  std::shared_ptr<Lookups> lookups;  // of the aerodynamic model
   std::shared_ptr<Lookups> engines = std::make_shared<Lookups>();
 
   // After every change of what has states.
   void lay_out() {
-    model.layout = alula::layout_of(model);
+    alula::prepare(model);
     if (model.layout.size > alula::kMaxStates)
       throw nb::value_error("the aircraft has more states than the core holds (24)");
   }

@@ -44,12 +44,11 @@ bool is(const A& a, std::size_t rows, std::size_t columns) {
   return a.shape(0) == rows && a.shape(1) == columns;
 }
 
-int fly(const Aircraft& self, Vector x0, Matrix controls, double dt, int substeps,
-        MatrixOut states, MatrixOut outputs, MatrixOut inputs, bool hold,
-        const std::optional<Matrix>& gusts, const std::optional<Vector>& turbulence,
-        const std::optional<Matrix>& normals, const std::optional<Matrix>& gains,
-        const std::optional<Matrix>& limits, const std::optional<Matrix>& references,
-        const std::optional<Flags>& active) {
+int fly(const Aircraft& self, Vector x0, Matrix controls, double dt, int substeps, MatrixOut states,
+        MatrixOut outputs, MatrixOut inputs, bool hold, const std::optional<Matrix>& gusts,
+        const std::optional<Vector>& turbulence, const std::optional<Matrix>& normals,
+        const std::optional<Matrix>& gains, const std::optional<Matrix>& limits,
+        const std::optional<Matrix>& references, const std::optional<Flags>& active) {
   const std::size_t n = controls.shape(0);
   const State x = state_from(self, x0);
   expect(is(controls, n, 6) && n > 0, "controls: expected (n, 6)");

@@ -101,8 +101,7 @@ void bind_simulate(nb::module_& m) {
           throw nb::value_error("expected inertia (3, 3), rates (3,)");
         const Mat3<double> J{{row3(inertia, 0), row3(inertia, 1), row3(inertia, 2)}};
         nb::gil_scoped_release unlocked;
-        const auto d =
-            alula::tumble(J, Vec3<double>{rates(0), rates(1), rates(2)}, dt, steps);
+        const auto d = alula::tumble(J, Vec3<double>{rates(0), rates(1), rates(2)}, dt, steps);
         nb::gil_scoped_acquire locked;
         return nb::make_tuple(d.energy, d.magnitude, d.direction);
       },

@@ -39,7 +39,7 @@ alula::AircraftModel<T> light_aircraft() {
     a.table.terms[a.table.term_count++] = {static_cast<std::uint8_t>(e.coefficient),
                                            static_cast<std::uint8_t>(e.slot)};
   }
-  a.layout = layout_of(a);
+  prepare(a);
   return a;
 }
 
@@ -97,7 +97,7 @@ struct Full {
     a.fuel = {60.0, {0.1, 0.05, 0.2}, {{{30, 0, 0}, {0, 2, 0}, {0, 0, 31}}}};
     a.wind.shear = {0.01, -0.02, 0.0};
     a.wind.reference_height = 500.0;
-    a.layout = layout_of(a);
+    prepare(a);
   }
   Full(const Full&) = delete;
   Full& operator=(const Full&) = delete;

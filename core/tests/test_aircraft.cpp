@@ -51,6 +51,20 @@ TEST(Aircraft, StepsGiveSignsAndLookedUpValues) {
   }
 }
 
+TEST(Aircraft, RowsOfTermsGiveWhatTheTableGives) {
+  const aircraft_case::Full full;
+  ASSERT_GT(full.a.rows.rows, 0);
+  double slots[alula::kMaxSlots];
+  for (int i = 0; i < alula::kMaxSlots; ++i) slots[i] = std::sin(1.0 + i);
+  const auto by_rows = alula::coefficients(full.a.rows, slots);
+  const auto by_terms = alula::coefficients(full.a.table, full.a.values.data(), slots);
+  for (unsigned i = 0; i < 6; ++i) EXPECT_NEAR(by_rows[i], by_terms[i], 1e-14);  // fused products
+  // Too many terms of one coefficient: no rows, and the table is read itself.
+  alula::TermTable long_one{};
+  long_one.term_count = 13;
+  EXPECT_EQ(alula::term_rows(long_one, full.a.values.data()).rows, 0);
+}
+
 TEST(Aircraft, FloatFollowsDouble) {
   auto xd = level_flight<double>();
   auto xf = level_flight<float>();
@@ -121,7 +135,7 @@ TEST(Aircraft, FreeFallOverTheTurningEarthKeepsItsEnergy) {
   alula::AircraftModel<double> a;
   a.body = alula::mass_properties(1.0, alula::Mat3<double>{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}});
   a.earth = alula::Earth::wgs84;
-  a.layout = alula::layout_of(a);
+  alula::prepare(a);
   auto x = aircraft_case::over_wgs84(level_flight<double>());
   x[7] = 7000.0;  // nearly in orbit, as if there were no air
   x[9] = -300.0;
@@ -134,9 +148,9 @@ TEST(Aircraft, FreeFallOverTheTurningEarthKeepsItsEnergy) {
   };
   const double before = integral(x);
   for (int i = 0; i < 3000; ++i)
-    alula::rk4_step([&](double t, const State& at, State& rate) {
-      rate = alula::derivative(t, at, Input{}, a);
-    }, 0.0, 0.05, x);
+    alula::rk4_step([&](double t, const State& at,
+                        State& rate) { rate = alula::derivative(t, at, Input{}, a); },
+                    0.0, 0.05, x);
   EXPECT_NEAR(integral(x) / before, 1.0, 1e-11);  // rounding of 3000 steps
 }
 

@@ -204,9 +204,9 @@ TEST(Flight, HeldControlsAreSteps) {
   Input up{};
   up[0] = -0.1;
   for (int i = 0; i < 20; ++i)
-    alula::rk4_step([&](double t, const State& at, State& rate) {
-      rate = alula::derivative(t, at, i < 10 ? zero : up, a);
-    }, 0.0, 0.01, by_hand);
+    alula::rk4_step([&](double t, const State& at,
+                        State& rate) { rate = alula::derivative(t, at, i < 10 ? zero : up, a); },
+                    0.0, 0.01, by_hand);
   for (int j = 0; j < 13; ++j) EXPECT_NEAR(held.states[26 + j], by_hand[j], 1e-12) << j;
   EXPECT_NE(lines.states[26 + 11], held.states[26 + 11]);
   EXPECT_EQ(held.inputs[12], -0.1);
@@ -215,6 +215,7 @@ TEST(Flight, HeldControlsAreSteps) {
 TEST(Flight, EndsWhereTheStateIsNotFinite) {
   auto a = aircraft_case::light_aircraft<double>();
   a.values[7] = 3e4;  // Cm_q that drives
+  alula::prepare(a);
   std::vector<double> controls(1000 * 6);
   alula::FlightPlan<double> plan;
   plan.samples = 1000;
@@ -225,12 +226,9 @@ TEST(Flight, EndsWhereTheStateIsNotFinite) {
 
 TEST(Pilot, HoldsBankWithinHisLimits) {
   auto a = aircraft_case::light_aircraft<double>();
-  struct Extra {
-    int coefficient, slot;
-    double value;
-  };
   a.values[a.table.term_count] = -0.22;
   a.table.terms[a.table.term_count++] = {3, alula::kDa};
+  alula::prepare(a);
   const int n = 400;
   std::vector<double> controls(n * 6), references(n * 10);
   for (int i = 0; i < n; ++i) {
@@ -254,7 +252,8 @@ TEST(Pilot, HoldsBankWithinHisLimits) {
   const auto f = fly(a, level_flight<double>(), plan);
   ASSERT_EQ(f.samples, n);
   const double* q = &f.states[(n - 1) * 13 + 3];
-  EXPECT_NEAR(alula::euler_from_quaternion(alula::Quaternion<double>{q[0], q[1], q[2], q[3]}).x, 0.3,
+  EXPECT_NEAR(alula::euler_from_quaternion(alula::Quaternion<double>{q[0], q[1], q[2], q[3]}).x,
+              0.3,
               0.05);  // proportional, so that a few degrees stay
   for (int i = 0; i < n; ++i) EXPECT_LE(std::abs(f.inputs[i * 12 + 1]), 0.1);
   EXPECT_DOUBLE_EQ(f.inputs[1], -0.1);  // at first he is at the stop

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import pytest
-from verification import nesc
 
 from data import ROOT, data
+from verification import nesc
 
 
 @pytest.mark.parametrize("number", sorted(nesc.CASES))

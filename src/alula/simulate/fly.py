@@ -31,9 +31,9 @@ class SimulatedFlight:
     (rad), height (m). velocity: (n, 3) m/s against the Earth, NED. air_velocity: (n, 3) m/s body
     axes. mach: (n,). states: further states (n,) by name: rotor speeds 'omega' rad/s, 'power',
     'charge' A s, separation 'X', actuators, 'fuel_used' kg. inputs: (n, 12) as flown, pilot, gusts
-    and turbulence included: de da dr df dt thrust ug vg wg pg qg rg. engine_force (N), engine_moment
-    (N m, about the center of gravity): (n, 3) body axes. plant_states: (n, k), all states of the
-    core; any row starts a flight. messages: what was noticed.
+    and turbulence included: de da dr df dt thrust ug vg wg pg qg rg. engine_force (N),
+    engine_moment (N m, about the center of gravity): (n, 3) body axes. plant_states: (n, k), all
+    states of the core; any row starts a flight. messages: what was noticed.
     """
 
     motion: Motion
@@ -159,9 +159,7 @@ def fly(
         )
     maneuver = maneuver or Maneuver("flight", "simulation", "simulated", float(t[0]), float(t[-1]))
     names = plant.further_states
-    return _as_flight(
-        airframe, model, maneuver, t, names, states, outputs, flown_inputs, messages
-    )
+    return _as_flight(airframe, model, maneuver, t, names, states, outputs, flown_inputs, messages)
 
 
 def _start(plant: Any, x0: Array, u: Array) -> Array:
@@ -235,7 +233,9 @@ def _as_flight(
     p, q, r = (frozen(c) for c in states.T[10:13])
     further = {name: frozen(states[:, BODY_STATES + i]) for i, name in enumerate(names)}
     # Behind an actuator a control stands where the actuator is.
-    controls = {name: further.get(name, frozen(inputs[:, i])) for i, name in enumerate(CONTROLS[:5])}
+    controls = {
+        name: further.get(name, frozen(inputs[:, i])) for i, name in enumerate(CONTROLS[:5])
+    }
     motion = Motion(
         maneuver=maneuver,
         t=frozen(t),

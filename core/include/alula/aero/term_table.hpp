@@ -106,11 +106,53 @@ template <class S, class T>
 constexpr std::array<S, kCoefficients> coefficients(const TermTable& table, const T* values,
                                                     const S* slots) {
   std::array<S, kCoefficients> c{};
+  for (S& zero : c) zero = S(0);
   for (int k = 0; k < table.term_count; ++k) {
     const Term& term = table.terms[static_cast<unsigned>(k)];
     c[term.coefficient] += values[k] * slots[term.slot];
   }
   return c;
+}
+
+// The same terms in rows of one for each coefficient, filled up with zeros: six sums that do not
+// wait for one another, and no branch but the loop. The caller's to make once for a model.
+template <class T>
+struct TermRows {
+  static constexpr int kRows = 12;  // a coefficient with more terms: the table itself is used
+  int rows = 0;
+  std::array<std::array<std::uint8_t, kCoefficients>, kRows> slot{};
+  std::array<std::array<T, kCoefficients>, kRows> value{};
+};
+
+template <class T>
+constexpr TermRows<T> term_rows(const TermTable& table, const T* values) {
+  TermRows<T> out;
+  std::array<int, kCoefficients> count{};
+  for (int k = 0; k < table.term_count; ++k) {
+    const Term& term = table.terms[static_cast<unsigned>(k)];
+    const int row = count[term.coefficient]++;
+    if (row >= TermRows<T>::kRows) return {};
+    if (row >= out.rows) out.rows = row + 1;
+    out.slot[static_cast<unsigned>(row)][term.coefficient] = term.slot;
+    out.value[static_cast<unsigned>(row)][term.coefficient] = values[k];
+  }
+  return out;
+}
+
+template <class S, class T>
+constexpr std::array<S, kCoefficients> coefficients(const TermRows<T>& terms, const S* slots) {
+  S c0(0), c1(0), c2(0), c3(0), c4(0), c5(0);
+  for (int i = 0; i < terms.rows; ++i) {
+    const auto& slot = terms.slot[static_cast<unsigned>(i)];
+    const auto& value = terms.value[static_cast<unsigned>(i)];
+    c0 += value[0] * slots[slot[0]];
+    c1 += value[1] * slots[slot[1]];
+    c2 += value[2] * slots[slot[2]];
+    c3 += value[3] * slots[slot[3]];
+    c4 += value[4] * slots[slot[4]];
+    c5 += value[5] * slots[slot[5]];
+  }
+  return {c0, c1, c2, c3, c4, c5};
 }
 
 }  // namespace alula

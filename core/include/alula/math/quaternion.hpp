@@ -37,10 +37,9 @@ constexpr Vec3<Product<A, B>> transposed_times(const Mat3<A>& m, const Vec3<B>& 
 // Two turns, the first `a`: earth_to_body(a * b) is earth_to_body(b) earth_to_body(a).
 template <class S>
 constexpr Quaternion<S> operator*(const Quaternion<S>& a, const Quaternion<S>& b) {
-  return {a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z,
-          a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
-          a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
-          a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};
+  return {
+      a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z, a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
+      a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x, a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};
 }
 
 // Rate of the quaternion for body rates w (rad/s). The last part draws the norm back to one with

@@ -16,15 +16,26 @@ void body_rate(const FlightState<S>& x, const Place<S>& at, const Loads<S>& load
                const MassProperties<M>& body, const Vec3<S>& moment, FlightState<S>& rate) {
   const Vec3<S> v{x[7], x[8], x[9]}, w{x[10], x[11], x[12]};
   const Vec3<S> position = transposed_times(at.R_BE, v);
-  const Quaternion<S> turn = attitude_rate(Quaternion<S>{x[3], x[4], x[5], x[6]},
-                                           w - at.earth_rate, S(1));  // pull 1/s: slow and stable
+  const Quaternion<S> turn = attitude_rate(Quaternion<S>{x[3], x[4], x[5], x[6]}, w - at.earth_rate,
+                                           S(1));  // pull 1/s: slow and stable
   // Coriolis' acceleration counts the Earth's rate twice, once in w already.
-  const Vec3<S> dv = velocity_rate((M(1) / body.mass) * load.force, at.gravity, v,
-                                   w + at.earth_rate);
+  const Vec3<S> dv =
+      velocity_rate((M(1) / body.mass) * load.force, at.gravity, v, w + at.earth_rate);
   const Vec3<S> dw = angular_acceleration(body, moment, w);
-  const S rates[kBodyStates] = {position.x, position.y, position.z, turn.w, turn.x, turn.y, turn.z,
-                                dv.x,       dv.y,       dv.z,       dw.x,   dw.y,   dw.z};
-  for (int i = 0; i < kBodyStates; ++i) rate[i] = rates[i];
+  // One by one: an array in between would be written in pieces and read as a whole, and wait.
+  rate[0] = position.x;
+  rate[1] = position.y;
+  rate[2] = position.z;
+  rate[3] = turn.w;
+  rate[4] = turn.x;
+  rate[5] = turn.y;
+  rate[6] = turn.z;
+  rate[7] = dv.x;
+  rate[8] = dv.y;
+  rate[9] = dv.z;
+  rate[10] = dw.x;
+  rate[11] = dw.y;
+  rate[12] = dw.z;
 }
 
 // How the wind grows with height, 1/s: the slope of wind_at.
@@ -33,8 +44,8 @@ Vec3<S> wind_slope(const Wind<T>& wind, const S& height) {
   Vec3<S> slope{S(wind.shear.x), S(wind.shear.y), S(wind.shear.z)};
   const S z = height - wind.ground;
   if (wind.logarithmic && value_of(z) > T(kLowestProfile) && value_of(z) < T(kHighestProfile)) {
-    const T reference = limited(wind.reference_height - wind.ground, T(kLowestProfile),
-                                T(kHighestProfile));
+    const T reference =
+        limited(wind.reference_height - wind.ground, T(kLowestProfile), T(kHighestProfile));
     slope = slope + (T(1) / std::log(reference / wind.roughness) / z) * wind.steady;
   }
   return slope;
@@ -76,8 +87,8 @@ void state_rate(const FlightState<S>& x, const FlightInput<S>& u, const Aircraft
     const int halves = separation_states(a.stall);
     for (int i = 0; i < halves; ++i) {
       const Wing wing = halves == 1 ? Wing::whole : i == 0 ? Wing::left : Wing::right;
-      const S alpha = halves == 1 ? load.flow.alpha
-                                  : local_alpha(a.stall, load.v_air, load.w_air, wing);
+      const S alpha =
+          halves == 1 ? load.flow.alpha : local_alpha(a.stall, load.v_air, load.w_air, wing);
       const int place = layout.stall[i];
       rate[place] = separation_rate(a.stall, alpha, alpha_dot, x[place], wing);
     }
@@ -87,14 +98,13 @@ void state_rate(const FlightState<S>& x, const FlightInput<S>& u, const Aircraft
     const auto j = static_cast<unsigned>(i);
     if (place >= 0) rate[place] = actuator_rate(a.actuators[j], x[place], u[j]);
   }
-  if (layout.fuel >= 0)
-    rate[layout.fuel] = x[layout.fuel] < S(a.fuel.mass) ? load.fuel_flow : S(0);
+  if (layout.fuel >= 0) rate[layout.fuel] = x[layout.fuel] < S(a.fuel.mass) ? load.fuel_flow : S(0);
 }
 
 // The outputs that belong to loads and to the rate that came of them.
 template <class S, class T>
-FlightOutput<S> outputs_of(const FlightState<S>& x, const AircraftModel<T>& a,
-                           const Loads<S>& load, const FlightState<S>& rate) {
+FlightOutput<S> outputs_of(const FlightState<S>& x, const AircraftModel<T>& a, const Loads<S>& load,
+                           const FlightState<S>& rate) {
   Vec3<S> moment = load.engine_moment;
   S mass(a.body.mass);
   if (a.burns) {
@@ -104,20 +114,45 @@ FlightOutput<S> outputs_of(const FlightState<S>& x, const AircraftModel<T>& a,
   }
   const S k = S(1) / mass;
   const auto& c = load.coefficients;
-  return {k * load.force.x, k * load.force.y, k * load.force.z, rate[10], rate[11], rate[12],
-          load.flow.V, load.flow.alpha, load.flow.beta, load.mach, load.air.density,
-          c[0], c[1], c[2], c[3], c[4], c[5],
-          load.engine_force.x, load.engine_force.y, load.engine_force.z,
-          moment.x, moment.y, moment.z, load.thrust};
+  return {k * load.force.x,
+          k * load.force.y,
+          k * load.force.z,
+          rate[10],
+          rate[11],
+          rate[12],
+          load.flow.V,
+          load.flow.alpha,
+          load.flow.beta,
+          load.mach,
+          load.air.density,
+          c[0],
+          c[1],
+          c[2],
+          c[3],
+          c[4],
+          c[5],
+          load.engine_force.x,
+          load.engine_force.y,
+          load.engine_force.z,
+          moment.x,
+          moment.y,
+          moment.z,
+          load.thrust};
 }
 
 // dx/dt = f(t, x, u, params); nothing in it depends on time.
 template <class S, class T>
-FlightState<S> derivative(T /*t*/, const FlightState<S>& x, const FlightInput<S>& u,
-                          const AircraftModel<T>& params) {
+void derivative(T /*t*/, const FlightState<S>& x, const FlightInput<S>& u,
+                const AircraftModel<T>& params, FlightState<S>& rate) {
   const Place<S> at = place(x, params.earth, params.gravity);
-  FlightState<S> rate;
   state_rate(x, u, params, at, loads(x, u, params, at), rate);
+}
+
+template <class S, class T>
+FlightState<S> derivative(T t, const FlightState<S>& x, const FlightInput<S>& u,
+                          const AircraftModel<T>& params) {
+  FlightState<S> rate;
+  derivative(t, x, u, params, rate);
   return rate;
 }
 

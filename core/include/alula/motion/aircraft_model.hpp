@@ -27,6 +27,7 @@ struct AircraftModel {
   bool stability_axes = false;  // coefficients are CD CY CL instead of CX CY CZ
   TermTable table{};
   std::array<T, kMaxTerms> values{};
+  TermRows<T> rows{};  // of table and values, for speed; empty: they are read themselves
   const Lookup<T>* lookups = nullptr;  // the tables that the steps name; the caller's
   bool stalls = false;
   Stall<T> stall{};
@@ -62,6 +63,12 @@ StateLayout layout_of(const AircraftModel<T>& a) {
   if (a.burns) layout.fuel = next++;
   layout.size = next;
   return layout;
+}
+
+template <class T>
+void prepare(AircraftModel<T>& a) {
+  a.layout = layout_of(a);
+  a.rows = term_rows(a.table, a.values.data());
 }
 
 }  // namespace alula

@@ -32,7 +32,8 @@ struct FlightRecord {
   T *states = nullptr, *outputs = nullptr, *inputs = nullptr;
 };
 
-// Turbulence around the aircraft from one integration step to the next, body axes: ug vg wg pg qg rg.
+// Turbulence around the aircraft from one integration step to the next, body axes: ug vg wg pg qg
+// rg.
 template <class T>
 struct Eddies {
   DrydenFilter<T> filter{};
@@ -93,9 +94,9 @@ int fly(const AircraftModel<T>& a, FlightState<T> x, const FlightPlan<T>& plan,
       }
       if (plan.turbulence != nullptr) {
         const long step = static_cast<long>(i) * plan.substeps + s + 1;
-        air_next = last ? air
-                        : eddies.advance(*plan.turbulence, a, x, h,
-                                         plan.normals + step * kDrydenNormals);
+        air_next =
+            last ? air
+                 : eddies.advance(*plan.turbulence, a, x, h, plan.normals + step * kDrydenNormals);
         for (unsigned j = 0; j < 6; ++j) {
           u0[kGustInput + j] += air[j];
           u1[kGustInput + j] += air_next[j];
@@ -108,8 +109,10 @@ int fly(const AircraftModel<T>& a, FlightState<T> x, const FlightPlan<T>& plan,
         steer(*plan.pilot, seen, reference, u0);
         steer(*plan.pilot, seen, reference, u1);
       }
-      derivative_and_outputs(x, u0, a, k, y);
-      if (s == 0) {
+      if (s > 0) {
+        derivative(T(0), x, u0, a, k);
+      } else {
+        derivative_and_outputs(x, u0, a, k, y);
         T total(0);
         T* row = record.states + static_cast<long>(i) * n;
         for (int j = 0; j < n; ++j) total += row[j] = x[j];
@@ -125,7 +128,7 @@ int fly(const AircraftModel<T>& a, FlightState<T> x, const FlightPlan<T>& plan,
       rk4_step_from(
           k,
           [&](T t, const FlightState<T>& at, FlightState<T>& rate) {
-            rate = derivative(t, at, ++stage < 3 ? mid : u1, a);
+            derivative(t, at, ++stage < 3 ? mid : u1, a, rate);
           },
           T(0), h, x);
     }

@@ -41,8 +41,8 @@ BurnedMass<S> after_burning(const MassProperties<T>& loaded, const FuelLoad<T>& 
   const Mat3<S> taken = point_inertia(burned, at), moved = point_inertia(mass, now.shift);
   Mat3<S> inertia;
   for (int i = 0; i < 3; ++i)
-    inertia.row[i] = loaded.inertia.row[i] - part * fuel.inertia.row[i] - taken.row[i] -
-                     moved.row[i];
+    inertia.row[i] =
+        loaded.inertia.row[i] - part * fuel.inertia.row[i] - taken.row[i] - moved.row[i];
   now.body = mass_properties(mass, inertia);
   return now;
 }

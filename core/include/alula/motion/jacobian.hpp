@@ -19,7 +19,8 @@ void jacobian(const FlightState<T>& x, const FlightInput<T>& u, const AircraftMo
   xd.length = n;
   for (int first = 0; first < all; first += kWidth) {
     for (int i = 0; i < n; ++i) xd[i] = S(x[i]);
-    for (int i = 0; i < kFlightInputs; ++i) ud[static_cast<unsigned>(i)] = S(u[static_cast<unsigned>(i)]);
+    for (int i = 0; i < kFlightInputs; ++i)
+      ud[static_cast<unsigned>(i)] = S(u[static_cast<unsigned>(i)]);
     for (int j = first; j < first + kWidth && j < all; ++j)
       (j < n ? xd[j] : ud[static_cast<unsigned>(j - n)]).set_slope(j - first, T(1));
     derivative_and_outputs(xd, ud, params, rate, y);

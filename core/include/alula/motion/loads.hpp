@@ -39,10 +39,9 @@ void add_stall(const FlightState<S>& x, const AircraftModel<T>& a, const S& sine
   const StallIncrements<S> more =
       separation_states(a.stall) == 1
           ? stall_increments(a.stall, out.flow.alpha, left)
-          : stall_increments(a.stall, out.flow.alpha,
-                             local_alpha(a.stall, out.v_air, out.w_air, Wing::left),
-                             local_alpha(a.stall, out.v_air, out.w_air, Wing::right), left, right,
-                             a.b);
+          : stall_increments(
+                a.stall, out.flow.alpha, local_alpha(a.stall, out.v_air, out.w_air, Wing::left),
+                local_alpha(a.stall, out.v_air, out.w_air, Wing::right), left, right, a.b);
   auto& C = out.coefficients;
   if (a.stability_axes) {
     C[0] += more.CD;
@@ -86,7 +85,7 @@ void add_aerodynamics(const FlightState<S>& x, const FlightInput<S>& u, const Ai
   slots[kMach] = out.mach;
   fill_slots(a.table, slots, a.lookups);
   auto& C = out.coefficients;
-  C = coefficients(a.table, a.values.data(), slots);
+  C = a.rows.rows > 0 ? coefficients(a.rows, slots) : coefficients(a.table, a.values.data(), slots);
 
   const S plane = sqrt(v.x * v.x + v.z * v.z);
   const bool along_y = !(plane > S(kLeastAirspeed));  // then alpha is taken as zero

@@ -5,7 +5,18 @@
 namespace alula {
 
 // What he sees: V alpha beta (against the air), p q r, phi theta psi, h.
-enum Sight : int { kSeeV, kSeeAlpha, kSeeBeta, kSeeP, kSeeQ, kSeeR, kSeePhi, kSeeTheta, kSeePsi, kSeeH };
+enum Sight : int {
+  kSeeV,
+  kSeeAlpha,
+  kSeeBeta,
+  kSeeP,
+  kSeeQ,
+  kSeeR,
+  kSeePhi,
+  kSeeTheta,
+  kSeePsi,
+  kSeeH
+};
 inline constexpr int kSights = 10;
 
 // u = u_given + gain (reference - sight), within the control's limits (rad, dt 0 to 1).
@@ -23,8 +34,7 @@ std::array<T, kSights> sight(const FlightState<T>& x, const FlightInput<T>& u,
   const Vec3<T> v = Vec3<T>{x[7], x[8], x[9]} - at.R_BN * wind_at(a.wind, at.height) - gust;
   const FlowAngles<T> flow = flow_angles(v);
   const Vec3<T> euler = euler_from_rotation(at.R_BN);
-  return {flow.V, flow.alpha, flow.beta, x[10],     x[11],
-          x[12],  euler.x,    euler.y,   euler.z,   at.height};
+  return {flow.V, flow.alpha, flow.beta, x[10], x[11], x[12], euler.x, euler.y, euler.z, at.height};
 }
 
 // Adds his deflections to the controls of the input.

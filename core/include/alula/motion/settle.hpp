@@ -35,8 +35,7 @@ void settle(const AircraftModel<T>& a, const FlightInput<T>& u, FlightState<T>& 
   for (int i = 0; i < kControls; ++i) {
     if (layout.actuator[i] < 0) continue;
     const auto& actuator = a.actuators[static_cast<unsigned>(i)];
-    x[layout.actuator[i]] =
-        limited(u[static_cast<unsigned>(i)], actuator.low, actuator.high);
+    x[layout.actuator[i]] = limited(u[static_cast<unsigned>(i)], actuator.low, actuator.high);
   }
   const Place<T> at = place(x, a.earth, a.gravity);
   const Loads<T> load = loads(x, u, a, at);
@@ -44,8 +43,8 @@ void settle(const AircraftModel<T>& a, const FlightInput<T>& u, FlightState<T>& 
     const int halves = separation_states(a.stall);
     for (int i = 0; i < halves; ++i) {
       const Wing wing = halves == 1 ? Wing::whole : i == 0 ? Wing::left : Wing::right;
-      const T alpha = halves == 1 ? load.flow.alpha
-                                  : local_alpha(a.stall, load.v_air, load.w_air, wing);
+      const T alpha =
+          halves == 1 ? load.flow.alpha : local_alpha(a.stall, load.v_air, load.w_air, wing);
       x[layout.stall[i]] = attached_part(a.stall, alpha, wing);
     }
   }

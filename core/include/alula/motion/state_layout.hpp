@@ -29,9 +29,9 @@ inline constexpr int kMaxEngines = 4;
 
 // Places of the states behind the first thirteen; -1: there is none.
 struct StateLayout {
-  int engine[kMaxEngines] = {-1, -1, -1, -1};  // rotor speed (rad/s), or lagged thrust of a jet
-  int charge = -1;                             // drawn from the battery, A s
-  int stall[2] = {-1, -1};                     // separation point; of the left and right half
+  int engine[kMaxEngines] = {-1, -1, -1, -1};      // rotor speed (rad/s), or lagged thrust of a jet
+  int charge = -1;                                 // drawn from the battery, A s
+  int stall[2] = {-1, -1};                         // separation point; of the left and right half
   int actuator[kControls] = {-1, -1, -1, -1, -1};  // positions of de da dr df dt
   int fuel = -1;                                   // burned, kg
   int size = kBodyStates;

@@ -1,9 +1,9 @@
 #pragma once
 // A body that turns free of any moment: energy and angular momentum must stay as they were.
+#include "alula/math/bounded.hpp"
 #include "alula/math/quaternion.hpp"
 #include "alula/math/rk4.hpp"
 #include "alula/motion/rigid_body.hpp"
-#include "alula/math/bounded.hpp"
 
 namespace alula {
 
@@ -35,7 +35,8 @@ TumblingDrift<T> tumble(const Mat3<T>& inertia, const Vec3<T>& rates, T dt, long
         },
         T(0), dt, x);
     const Vec3<T> H = momentum();
-    const Vec3<T> off = transposed_times(earth_to_body(Quaternion<T>{x[0], x[1], x[2], x[3]}), H) - H0;
+    const Vec3<T> off =
+        transposed_times(earth_to_body(Quaternion<T>{x[0], x[1], x[2], x[3]}), H) - H0;
     const T e = std::abs(dot(H, Vec3<T>{x[4], x[5], x[6]}) / E0 - T(1));
     const T m = std::abs(std::sqrt(dot(H, H)) / length - T(1));
     const T d = std::sqrt(dot(off, off)) / length;
