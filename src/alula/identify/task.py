@@ -48,6 +48,10 @@ class CoefficientTask:
         """
         names, matrix = regressors(self.coefficient, self.formula, variables)
         assert tuple(names) == self.terms  # a formula's terms do not depend on the data
+        return self.smoothed(item, matrix)
+
+    def smoothed(self, item: CoefficientData, matrix: Array) -> Array:
+        """Regressors (n, k) through the filter that the measured coefficient has passed."""
         if item.cubic is None or self.coefficient not in MOMENTS:
             return matrix
         return item.cubic.matched(matrix)
