@@ -90,7 +90,7 @@ def minimize(
     algorithm: Algorithm = "gauss_newton",
     lower: Array | None = None,
     upper: Array | None = None,
-    iterations: int = 50,
+    iterations: int = 200,
     close: float = CLOSE,
 ) -> Minimum:
     """The parameters (k,) of least cost, from `start`, within `lower` and `upper` (k,).
