@@ -20,7 +20,7 @@ from alula.identify.regression import Block, Regression, Weighting, regress
 from alula.identify.result import Fit, Identification, Parameter, Series
 from alula.identify.typical import constant_name
 from alula.identify.verdict import assess
-from alula.model import reference_scales, regressors
+from alula.model import LIFT, reference_scales, regressors
 
 LONGITUDINAL = frozenset({"CX", "CZ", "CD", "CL", "Cm"})
 MOMENTS = frozenset({"Cl", "Cm", "Cn"})
@@ -111,7 +111,7 @@ class _Task:
         common: bool,
     ) -> None:
         self.coefficient, self.formula, self.learn = coefficient, formula, learn
-        terms, _ = regressors(coefficient, formula, learn[0].variables)
+        terms, _ = regressors(coefficient, formula, _variables(learn[0]))
         self.terms = tuple(terms)
         self.constant = constant_name(coefficient)
         self.split = self.constant in self.terms and len(learn) > 1 and not common
@@ -137,6 +137,7 @@ class _Task:
             for way in item.perturbed:
                 if way.source == source:
                     coefficients, variables = way.coefficients, way.variables
+            variables = _with_lift(variables, coefficients)
             measured = coefficients[self.coefficient]
             matrix = self._spread(i, self.terms_of(item, variables))
             sharp = None
@@ -153,6 +154,17 @@ class _Task:
         own[:, i] = 1.0
         keep = [j for j, name in enumerate(self.terms) if name in self.shared]
         return np.hstack([own, matrix[:, keep]])
+
+
+def _with_lift(
+    variables: Mapping[str, Array], coefficients: Mapping[str, Array]
+) -> Mapping[str, Array]:
+    """The variables and the measured lift coefficient, which the drag's formula may name."""
+    return {**variables, LIFT: coefficients[LIFT]} if LIFT in coefficients else variables
+
+
+def _variables(item: CoefficientData) -> Mapping[str, Array]:
+    return _with_lift(item.variables, item.coefficients)
 
 
 def _serving(data: Sequence[CoefficientData], coefficient: str) -> list[CoefficientData]:
@@ -205,7 +217,7 @@ def _series(task: _Task, fit: Regression, serving: Sequence[CoefficientData]) ->
         measured = item.coefficients[task.coefficient]
         own = f"{task.constant}[{item.maneuver.id}]"
         used = [value.get(own, 0.0) if n not in value else value[n] for n in task.terms]
-        model = task.terms_of(item, item.variables) @ np.array(used)
+        model = task.terms_of(item, _variables(item)) @ np.array(used)
         if item.maneuver.held_out and task.constant in task.terms:
             model = model + np.mean(measured - model)
         out.append(
