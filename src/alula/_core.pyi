@@ -182,7 +182,7 @@ class AircraftModel:
         State rates dx (state_count) and outputs y (24) at one state and input (6 or 12).
         """
 
-    def jacobian(self, x: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], u: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> tuple:
+    def jacobian(self, x: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], u: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> tuple[NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64]]:
         """
         A (n, n), B (n, 12), C (24, n), D (24, 12), exact, at a state and an input.
         """
@@ -209,7 +209,7 @@ def attitudes(states: Annotated[NDArray[numpy.float64], dict(shape=(None, None),
     longitude (rad), height (m).
     """
 
-def tumbling_drift(inertia: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], rates: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], dt: float, steps: int) -> tuple:
+def tumbling_drift(inertia: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], rates: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], dt: float, steps: int) -> tuple[float, float, float]:
     """
     Largest relative drift, over a torque-free rotation, of energy, of the length of the
     angular momentum, and of its vector in inertial axes.

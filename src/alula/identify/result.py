@@ -31,7 +31,9 @@ class Parameter:
     """One estimated parameter.
 
     se_white: standard error if residuals were white. se: with coloured residuals and the
-    reconstruction's uncertainty. ci95: by `se` and Student's t.
+    reconstruction's uncertainty. ci95: by `se` and Student's t. bias: of an estimate that is biased
+    by its method (ridge, principal components), its estimated bias, which `se` leaves out and
+    `ci95` includes; None where the method is unbiased.
     """
 
     name: str  # 'Cm_alpha'; constants of several maneuvers: 'Cm_0[elevator]'
@@ -45,6 +47,7 @@ class Parameter:
     unit: str
     vif: float  # variance inflation factor
     truth: float | None = None
+    bias: float | None = None
 
 
 @dataclass(frozen=True)
