@@ -1,7 +1,7 @@
 """Several maneuvers and one model as the optimizer's problem: what is a parameter, and where.
 
 Parameters: the model's terms that are neither fixed nor tied, then of each maneuver its initial
-states ('alpha0[id]') and the biases of its outputs ('b_az[id]'); where constants are not common,
+states ('alpha(0)[id]') and the biases of its outputs ('b_az[id]'); where constants are not common,
 the constant terms too ('Cm_0[id]').
 """
 
@@ -17,7 +17,6 @@ from alula.base.arrays import Array
 from alula.base.messages import refuse
 from alula.core import core
 from alula.identify.measured_maneuver import CONTROLS, OUTPUTS, STATES, MeasuredManeuver
-from alula.identify.optimizer import Sums
 from alula.identify.typical import constant_name
 from alula.model import AXES, AeroModel, to_table
 
@@ -27,6 +26,21 @@ STATE_SETS: Mapping[str, tuple[str, ...]] = {
     "six": STATES,
 }
 MAX_COLUMNS = 64  # of one maneuver, core/include/alula/math/capacity.hpp
+
+
+@dataclass(frozen=True)
+class Sums:
+    """One evaluation with m outputs and k parameters; J are the outputs' slopes, e the residuals.
+
+    information: (m, k, k), sums of J J'; gradient: (m, k), of J e; squares: (m,), of e^2; counts:
+    (m,). finite: whether every maneuver was flown to its end.
+    """
+
+    information: Array
+    gradient: Array
+    squares: Array
+    counts: Array
+    finite: bool
 
 
 @dataclass(frozen=True)
@@ -54,8 +68,7 @@ class Setting:
 class FlightProblem:
     """The problem of `setting` on maneuvers with one model; its values are the start.
 
-    names: (k,) of the parameters. coefficient_of: (k,) the coefficient each belongs to, '' for
-    initial states and biases. start: (k,).
+    names: (k,) of the parameters. belongs: (k,) the coefficient, state or output of each. start: (k,).
     """
 
     def __init__(
@@ -64,7 +77,7 @@ class FlightProblem:
         self.maneuvers, self.model, self.setting = tuple(maneuvers), model, setting
         self._check()
         self.names: list[str] = []
-        self.coefficient_of: list[str] = []
+        self.belongs: list[str] = []
         self._start: list[float] = []
         self._values = [model.values.copy() for _ in maneuvers]
         self._terms: list[list[int]] = [[] for _ in maneuvers]  # global column of each term
@@ -73,6 +86,11 @@ class FlightProblem:
         self._initial, self._bias = self._add_own()
         self.start = np.array(self._start)
         self._fits = [self._in_core(i) for i in range(len(self.maneuvers))]
+
+    @property
+    def readings(self) -> list[Array]:
+        """Measured outputs (n, m) of each maneuver, NaN where a sensor says nothing."""
+        return [np.column_stack([m.outputs[n] for n in self.setting.outputs]) for m in self.maneuvers]
 
     def _check(self) -> None:
         s, names = self.setting, self.model.names
@@ -131,7 +149,7 @@ class FlightProblem:
 
     def _column(self, name: str, coefficient: str, start: float) -> int:
         self.names.append(name)
-        self.coefficient_of.append(coefficient)
+        self.belongs.append(coefficient)
         self._start.append(float(start))
         return len(self.names) - 1
 
@@ -167,10 +185,12 @@ class FlightProblem:
             here = [-1] * len(STATES)
             if s.initial == "estimate":
                 for name in (n for n in STATES if n in s.states):
-                    here[STATES.index(name)] = self._column(f"{name}0{tag}", "", _first(m, name))
+                    here[STATES.index(name)] = self._column(
+                        f"{name}(0){tag}", name, _first(m, name)
+                    )
             initial.append(here)
             bias.append(
-                [self._column(f"b_{n}{tag}", "", 0.0) if n in s.biases else -1 for n in s.outputs]
+                [self._column(f"b_{n}{tag}", n, 0.0) if n in s.biases else -1 for n in s.outputs]
             )
         return initial, bias
 
@@ -221,7 +241,7 @@ class FlightProblem:
         )
 
     def evaluate(self, theta: Array) -> Sums:
-        """The sums over all maneuvers; see optimizer.py."""
+        """The sums over all maneuvers at the parameters (k,)."""
         k, m = len(self.names), len(self.setting.outputs)
         parts = [fit.core.sums(*fit.arguments(theta)) for fit in self._fits]
         if len(parts) == 1 and len(self._fits[0].used) == k:
