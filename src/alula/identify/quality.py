@@ -10,7 +10,7 @@ from alula.base.arrays import Array, frozen
 from alula.identify.coefficients import CoefficientData
 from alula.identify.regression import Regression
 from alula.identify.result import Fit, Parameter, Series
-from alula.identify.task import CoefficientTask
+from alula.identify.task import CoefficientTask, variables_of
 
 
 def predictions(
@@ -23,7 +23,7 @@ def predictions(
         measured = item.coefficients[task.coefficient]
         own = f"{task.constant}[{item.maneuver.id}]"
         used = [value.get(own, 0.0) if n not in value else value[n] for n in task.terms]
-        model = task.terms_of(item, item.variables) @ np.array(used)
+        model = task.terms_of(item, variables_of(item)) @ np.array(used)
         if item.maneuver.held_out and task.constant in task.terms:
             model = model + np.mean(measured - model)
         out.append(

@@ -81,7 +81,9 @@ class Identification:
     """The result of one identification; statsmodels' words for what they know.
 
     A parameter that is not identifiable has NaN for value and errors, and NaN in `covariance`.
-    labels: what a coefficient includes beyond aerodynamics ('including thrust').
+    labels: what a coefficient includes beyond aerodynamics ('including thrust'). fits: by
+    coefficient, or by output where outputs are compared; formulas: by coefficient, where fits are
+    not.
     """
 
     method: str
@@ -92,6 +94,7 @@ class Identification:
     status: str
     messages: tuple[Message, ...] = ()
     labels: Mapping[str, str] = field(default_factory=dict)
+    formulas: Mapping[str, str] = field(default_factory=dict)
 
     def __getitem__(self, name: str) -> Parameter:
         """The parameter `name`; raises KeyError."""

@@ -12,7 +12,7 @@ from alula.base.messages import Message, refuse, warn
 from alula.identify.coefficients import CoefficientData
 from alula.identify.regression import Block
 from alula.identify.typical import constant_name
-from alula.model import regressors
+from alula.model import LIFT, regressors
 
 LONGITUDINAL = frozenset({"CX", "CZ", "CD", "CL", "Cm"})
 MOMENTS = frozenset({"Cl", "Cm", "Cn"})
@@ -33,7 +33,7 @@ class CoefficientTask:
         common: bool,
     ) -> None:
         self.coefficient, self.formula, self.learn = coefficient, formula, learn
-        terms, _ = regressors(coefficient, formula, learn[0].variables)
+        terms, _ = regressors(coefficient, formula, variables_of(learn[0]))
         self.terms = tuple(terms)
         self.constant = constant_name(coefficient)
         self.split = self.constant in self.terms and len(learn) > 1 and not common
@@ -64,6 +64,7 @@ class CoefficientTask:
             for way in item.perturbed:
                 if way.source == source:
                     coefficients, variables = way.coefficients, way.variables
+            variables = _with_lift(variables, coefficients)
             measured = coefficients[self.coefficient]
             matrix = self._spread(i, self.terms_of(item, variables))
             sharp = None
@@ -80,6 +81,17 @@ class CoefficientTask:
         own[:, i] = 1.0
         keep = [j for j, name in enumerate(self.terms) if name in self.shared]
         return np.hstack([own, matrix[:, keep]])
+
+
+def variables_of(item: CoefficientData) -> Mapping[str, Array]:
+    """The variables of a formula: also the measured lift, which the drag's may name."""
+    return _with_lift(item.variables, item.coefficients)
+
+
+def _with_lift(
+    variables: Mapping[str, Array], coefficients: Mapping[str, Array]
+) -> Mapping[str, Array]:
+    return {**variables, LIFT: coefficients[LIFT]} if LIFT in coefficients else variables
 
 
 def serving(data: Sequence[CoefficientData], coefficient: str) -> list[CoefficientData]:

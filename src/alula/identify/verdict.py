@@ -53,7 +53,7 @@ def assess(
     that are good enough, by name. units: by name, where the names do not tell them.
     """
     covariance = fit.coloured.covariance + added
-    typical = [typical_magnitude(coefficient, name.split("[")[0]) for name in fit.names]
+    typical = [typical_magnitude(n.split("_")[0], n.split("[")[0]) for n in fit.names]
     # What the data determine does not depend on the method: a biased one would hide it.
     judge = fit if fit.ordinary is None else fit.ordinary
     lost = unresolved(judge, judge.coloured.covariance + added, typical)
