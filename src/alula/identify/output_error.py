@@ -12,83 +12,28 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal, Protocol
+from typing import Literal
 
 import numpy as np
 
 from alula.base.arrays import Array
 from alula.base.messages import Message, note, refuse
-from alula.identify.likelihood import Fitted, Prior, Whitened, assembled
+from alula.identify.likelihood import Fitted, Prior, assembled
 from alula.identify.linear_output_error import prior_blocks
 from alula.identify.measured_maneuver import MeasuredManeuver
-from alula.identify.optimizer import Algorithm, Minimum, Point, minimize, with_prior
-from alula.identify.output_error_problem import STATE_SETS, FlightProblem, Setting, Sums
+from alula.identify.optimizer import Algorithm, Minimum, minimize, with_prior
+from alula.identify.output_error_likelihood import OutputErrorLikelihood, likelihood_of
+from alula.identify.output_error_problem import STATE_SETS, FlightProblem, Setting
 from alula.identify.output_error_start import start_values
 from alula.identify.result import Identification
 from alula.identify.typical import unit
 from alula.model import AeroModel, Reference, aero_model, parse, reference_scales
 
-SMALLEST = 1e-24  # of an output's variance over its mean square: below it is rounding
 PULL = 2.0  # 1/s, of a first search where the start values diverge
 StateSet = Literal["longitudinal", "lateral", "six"]
+Covariance = Literal["diagonal", "full"]
 _UNITS = {"V": "m/s", "ax": "m/s2", "ay": "m/s2", "az": "m/s2", "p": "rad/s", "q": "rad/s"}
 _UNITS |= {"r": "rad/s", "pdot": "rad/s2", "qdot": "rad/s2", "rdot": "rad/s2"}
-
-
-class Problem(Protocol):
-    """What the search needs: names, first values, sums, flights with slopes."""
-
-    @property
-    def names(self) -> list[str]:
-        """(k,) names of the parameters."""
-        ...
-
-    @property
-    def readings(self) -> Sequence[Array]:
-        """(n, m) of each maneuver, NaN where a sensor says nothing."""
-        ...
-
-    def evaluate(self, theta: Array) -> Sums:
-        """The sums at the parameters (k,)."""
-        ...
-
-    def flight(self, theta: Array, i: int) -> tuple[Array, Array]:
-        """Outputs (n, m) of maneuver i and slopes (n, m, k)."""
-        ...
-
-
-class OutputErrorLikelihood:
-    """The likelihood of a problem's outputs. variance: (m,) where the noise is known."""
-
-    def __init__(self, problem: Problem, variance: Array | None = None) -> None:
-        self.problem, self.known = problem, variance
-        squares = [np.nanmean(r**2, axis=0) for r in problem.readings]
-        self.least = np.maximum(SMALLEST * np.mean(squares, axis=0), 1e-300)
-        self._at: tuple[Array, Point | None] | None = None
-
-    def __call__(self, theta: Array, derivatives: bool) -> Point | None:
-        """Cost, gradient and information; one flight gives them all, so it is kept."""
-        if self._at is None or not np.array_equal(self._at[0], theta):
-            self._at = theta.copy(), self._point(theta)
-        return self._at[1]
-
-    def variance(self, sums: Sums) -> Array:
-        """(m,) R of every output."""
-        if self.known is not None:
-            return self.known
-        return np.maximum(sums.squares / np.maximum(sums.counts, 1), self.least)
-
-    def _point(self, theta: Array) -> Point | None:
-        sums = self.problem.evaluate(theta)
-        if not sums.finite:
-            return None
-        r = self.variance(sums)
-        if self.known is None:
-            cost = 0.5 * float(sums.counts @ np.log(r))
-        else:
-            cost = 0.5 * float(np.sum(sums.squares / r))
-        information = np.tensordot(1.0 / r, sums.information, 1)
-        return Point(cost, -(1.0 / r) @ sums.gradient, information)
 
 
 @dataclass(frozen=True)
@@ -115,6 +60,7 @@ def fit_output_error(
     bounds: Mapping[str, tuple[float, float]] | None = None,
     priors: Mapping[str, Prior] | None = None,
     algorithm: Algorithm = "gauss_newton",
+    covariance: Covariance = "diagonal",
 ) -> OutputErrorFit:
     """The search alone, without error bars for coloured residuals and verdicts.
 
@@ -126,14 +72,14 @@ def fit_output_error(
     if noise is not None:
         _check_names("noise", noise, setting.outputs, setting.outputs)
         known = np.array([noise[name] for name in setting.outputs]) ** 2
-    likelihood = OutputErrorLikelihood(problem, known)
+    likelihood = likelihood_of(problem, known, covariance == "full")
     found = _search(likelihood, problem, problem.start, bounds or {}, priors or {}, algorithm)
     said: tuple[Message, ...] = ()
     if not found.converged and found.iterations == 0 and not setting.stabilize:
         pull = {name: PULL for name in setting.states if name in setting.outputs}
         held = FlightProblem(maneuvers, model, replace(setting, stabilize=pull))
         first = _search(
-            OutputErrorLikelihood(held, known), held, held.start, bounds or {}, priors or {},
+            likelihood_of(held, known, covariance == "full"), held, held.start, bounds or {}, priors or {},
             algorithm,
         )  # fmt: skip
         found = _search(likelihood, problem, first.value, bounds or {}, priors or {}, algorithm)
@@ -166,6 +112,7 @@ def identify_output_error(
     common_constant: bool = True,
     stabilize: Mapping[str, float] | None = None,
     noise: Mapping[str, float] | None = None,
+    covariance: Covariance = "diagonal",
     algorithm: Algorithm = "gauss_newton",
     substeps: int = 1,
     scales: Mapping[str, float] | None = None,
@@ -178,6 +125,8 @@ def identify_output_error(
     'six' (all); what is not a state is taken as measured. outputs: what is compared. start: values
     of terms, others by equation error. initial, biases, common_constant, stabilize (1/s by state),
     substeps: see `Setting`. noise: standard deviations where they are known; else estimated.
+    covariance: of the residuals, 'full' where the errors of different outputs go together, as
+    those of a model do.
 
     A held-out maneuver is predicted with the derivatives of the others; its initial states, biases
     and own constants are fitted to itself. Raises BadInput for names that do not exist and for
@@ -214,12 +163,18 @@ def identify_output_error(
     values = {**start_values(learn, models, {**(fixed or {}), **(start or {})})}
     model = _model(models, values, learn[0])
     fit = fit_output_error(
-        learn, model, setting, noise=noise, bounds=bounds, priors=priors, algorithm=algorithm
-    )
+        learn, model, setting, noise=noise, bounds=bounds, priors=priors, algorithm=algorithm,
+        covariance=covariance,
+    )  # fmt: skip
     problem, found = fit.problem, fit.found
     enough = {k: v for c, f in models.items() for k, v in reference_scales(c, f).items()}
-    fitted, blocks = _at(fit, priors or {})
+    fitted: list[Fitted] = []
+    blocks = []
     if found.converged:
+        blocks = fit.likelihood.blocks(found.value)
+        blocks += prior_blocks(problem.names, found.value, priors or {})
+        for i, m in enumerate(learn):
+            fitted += _fitted(m, problem.flight(found.value, i)[0], setting.outputs)
         for m in maneuvers:
             if m.maneuver.held_out:
                 fitted += _predicted(m, fit, model, setting)
@@ -259,27 +214,6 @@ def _search(
     return minimize(joint, start, algorithm=algorithm, lower=low, upper=high)
 
 
-def _at(
-    fit: OutputErrorFit, priors: Mapping[str, Prior]
-) -> tuple[list[Fitted], list[Whitened]]:
-    """Outputs, and whitened residuals with their slopes, where the search ended."""
-    problem, theta = fit.problem, fit.found.value
-    if not fit.found.converged:
-        return [], []
-    deviation = np.sqrt(fit.likelihood.variance(problem.evaluate(theta)))
-    fitted, blocks = [], []
-    for i, m in enumerate(problem.maneuvers):
-        y, slopes = problem.flight(theta, i)
-        for o, name in enumerate(problem.setting.outputs):
-            measured = m.outputs[name]
-            fitted.append(Fitted(name, m.maneuver.id, m.t, measured, y[:, o], False))
-            good = np.isfinite(measured)
-            if good.any():
-                error = (measured - y[:, o])[good] / deviation[o]
-                blocks.append(Whitened(slopes[good, o] / deviation[o], error))
-    return fitted, blocks + prior_blocks(problem.names, theta, priors)
-
-
 def _predicted(
     m: MeasuredManeuver, fit: OutputErrorFit, model: AeroModel, setting: Setting
 ) -> list[Fitted]:
@@ -290,11 +224,14 @@ def _predicted(
     known = {n: v for n, v in values.items() if n not in own and n not in setting.tied}
     start = replace(model, values=np.array([values[n] for n in model.names]))
     problem = FlightProblem([m], start, replace(setting, fixed={**setting.fixed, **known}))
-    found = minimize(OutputErrorLikelihood(problem, None), problem.start)
-    y, _ = problem.flight(found.value, 0)
+    found = minimize(likelihood_of(problem, None, False), problem.start)
+    return _fitted(m, problem.flight(found.value, 0)[0], setting.outputs)
+
+
+def _fitted(m: MeasuredManeuver, y: Array, outputs: Sequence[str]) -> list[Fitted]:
     return [
-        Fitted(name, m.maneuver.id, m.t, m.outputs[name], y[:, o], True)
-        for o, name in enumerate(setting.outputs)
+        Fitted(name, m.maneuver.id, m.t, m.outputs[name], y[:, o], m.maneuver.held_out)
+        for o, name in enumerate(outputs)
     ]
 
 
