@@ -31,9 +31,9 @@ class Whitened:
     """One block at the maximum: sensitivities (n, k) and residual (n,), over their deviation.
 
     prior: a prior's row, whose variance is known to be 1 and not to be told from its residual.
-    coloured: (sensitivities (n, k), residual (n,)) whose autocorrelation makes the error bars, where
-    it is not the block's own: of outputs that are whitened together, R^-1 S and the output's own
-    residual (Klein and Morelli 2006, Eq. (6.29) ff.).
+    coloured: (sensitivities (n, k), residual (n,)) whose autocorrelation makes the error bars,
+    where that is not the block's own: of outputs that are whitened together, R^-1 S and the
+    output's own residual (Klein and Morelli 2006, Eq. (6.29) ff.).
     """
 
     sensitivity: Array
@@ -73,9 +73,7 @@ def regression_at(names: Sequence[str], value: Array, blocks: Sequence[Whitened]
     solution = replace(solution, value=value - null / solution.scale)
     residuals = tuple(b.residual for b in blocks)
     coloured = coloured_covariance(
-        [
-            b.coloured or (b.sensitivity, np.ones(1) if b.prior else b.residual) for b in blocks
-        ],
+        [b.coloured or (b.sensitivity, np.ones(1) if b.prior else b.residual) for b in blocks],
         solution.dispersion,
     )
     coloured = replace(

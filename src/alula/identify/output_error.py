@@ -78,10 +78,8 @@ def fit_output_error(
     if not found.converged and found.iterations == 0 and not setting.stabilize:
         pull = {name: PULL for name in setting.states if name in setting.outputs}
         held = FlightProblem(maneuvers, model, replace(setting, stabilize=pull))
-        first = _search(
-            likelihood_of(held, known, covariance == "full"), held, held.start, bounds or {}, priors or {},
-            algorithm,
-        )  # fmt: skip
+        easier = likelihood_of(held, known, covariance == "full")
+        first = _search(easier, held, held.start, bounds or {}, priors or {}, algorithm)
         found = _search(likelihood, problem, first.value, bounds or {}, priors or {}, algorithm)
         said = (
             note(

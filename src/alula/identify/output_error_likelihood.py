@@ -57,7 +57,8 @@ class OutputErrorLikelihood:
         """(m,) R of every output."""
         if self.known is not None:
             return self.known
-        return np.maximum(sums.squares / np.maximum(sums.counts, 1), self.least)
+        out: Array = np.maximum(sums.squares / np.maximum(sums.counts, 1), self.least)
+        return out
 
     def blocks(self, theta: Array) -> list[Whitened]:
         """One block per output and maneuver, missing samples left out."""
@@ -110,7 +111,10 @@ class FullCovarianceLikelihood(OutputErrorLikelihood):
         size = np.sqrt(np.diag(R))
         out = []
         for v, J in runs:
-            white, weighted = np.einsum("po,noi->npi", root, J), np.einsum("po,noi->npi", inverse, J)
+            white, weighted = (
+                np.einsum("po,noi->npi", root, J),
+                np.einsum("po,noi->npi", inverse, J),
+            )
             for o in range(len(R)):
                 own = (weighted[:, o] * size[o], v[:, o] / size[o])
                 out.append(Whitened(white[:, o], v @ root[o], coloured=own))

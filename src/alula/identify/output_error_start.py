@@ -48,7 +48,9 @@ def start_values(
         rows = []
         for m, known, own in zip(maneuvers, variables, measured, strict=True):
             with_lift = {**known, LIFT: own[LIFT]} if LIFT in own else known
-            rows.append(np.column_stack([np.broadcast_to(t.values(with_lift), m.t.shape) for t in terms]))
+            rows.append(
+                np.column_stack([np.broadcast_to(t.values(with_lift), m.t.shape) for t in terms])
+            )
         matrix = np.vstack(rows)
         y = np.concatenate([c[coefficient] for c in measured])
         free = [i for i, n in enumerate(names) if n not in given]
