@@ -10,7 +10,7 @@ sum of N/2 ln r_i.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -29,7 +29,7 @@ from alula.identify.result import Identification
 from alula.identify.typical import unit
 from alula.model import AeroModel, Reference, aero_model, parse, reference_scales
 
-PULL = 2.0  # 1/s, of a first search where the start values diverge
+PULLS = (2.0, 10.0, 40.0)  # 1/s, of a first search where the start values diverge
 StateSet = Literal["longitudinal", "lateral", "six"]
 Covariance = Literal["diagonal", "full"]
 _UNITS = {"V": "m/s", "ax": "m/s2", "ay": "m/s2", "az": "m/s2", "p": "rad/s", "q": "rad/s"}
@@ -73,21 +73,22 @@ def fit_output_error(
         _check_names("noise", noise, setting.outputs, setting.outputs)
         known = np.array([noise[name] for name in setting.outputs]) ** 2
     likelihood = likelihood_of(problem, known, covariance == "full")
-    found = _search(likelihood, problem, problem.start, bounds or {}, priors or {}, algorithm)
+
+    def search(likelihood: OutputErrorLikelihood, problem: FlightProblem, at: Array) -> Minimum:
+        return _search(likelihood, problem, at, bounds or {}, priors or {}, algorithm)
+
+    found = search(likelihood, problem, problem.start)
     said: tuple[Message, ...] = ()
     if not found.converged and found.iterations == 0 and not setting.stabilize:
-        pull = {name: PULL for name in setting.states if name in setting.outputs}
-        held = FlightProblem(maneuvers, model, replace(setting, stabilize=pull))
-        easier = likelihood_of(held, known, covariance == "full")
-        first = _search(easier, held, held.start, bounds or {}, priors or {}, algorithm)
-        found = _search(likelihood, problem, first.value, bounds or {}, priors or {}, algorithm)
+        first, pull = _pulled_start(maneuvers, model, setting, known, search)
+        found = search(likelihood, problem, first)
         said = (
             note(
                 "start_diverges",
                 where="output error",
                 expected="a motion that can be flown with the first values",
                 found=f"one that diverges; a first search pulled the states to their measurements "
-                f"({PULL:g}/s)",
+                f"({pull:g}/s)",
                 do="Nothing where the search then converged; else give start values.",
             ),
         )
@@ -190,6 +191,25 @@ def identify_output_error(
     )
     parameters = tuple(replace(p, unit=_unit(p.coefficient, p.name)) for p in result.parameters)
     return replace(result, parameters=parameters, formulas=dict(models))
+
+
+def _pulled_start(
+    maneuvers: Sequence[MeasuredManeuver],
+    model: AeroModel,
+    setting: Setting,
+    variance: Array | None,
+    search: Callable[[OutputErrorLikelihood, FlightProblem, Array], Minimum],
+) -> tuple[Array, float]:
+    """First values (k,) by states pulled to their measurements, as gently as will do."""
+    fastest = 1.0 / max(float(np.max(np.diff(m.t))) for m in maneuvers)
+    for gain in PULLS:
+        gain = min(gain, fastest)  # beyond it the pull itself is too fast for the steps
+        pull = {name: gain for name in setting.states if name in setting.outputs}
+        held = FlightProblem(maneuvers, model, replace(setting, stabilize=pull))
+        likelihood = likelihood_of(held, variance, False)
+        if likelihood(held.start, True) is not None:
+            break
+    return search(likelihood, held, held.start).value, gain
 
 
 def _search(

@@ -50,8 +50,10 @@ class ManeuverInCore:
 def input_rows(m: MeasuredManeuver, model: AeroModel) -> Array:
     """The core's rows of inputs (n, 28) for one maneuver.
 
-    Coefficients without a formula come as measured, so far as the maneuver has them.
+    Coefficients without a formula come as measured: as the maneuver has them, else those of forces
+    from its specific forces.
     """
+    known = {**force_coefficients(m), **m.coefficients}
     rows = np.zeros((len(m.t), 28))
     for j, name in enumerate(STATES):
         rows[:, j] = m.motion[name]
@@ -63,5 +65,27 @@ def input_rows(m: MeasuredManeuver, model: AeroModel) -> Array:
     rows[:, 18:21] = m.moment
     for j, name in enumerate(AXES[model.axes], start=21):
         if name not in model.coefficients:
-            rows[:, j] = m.coefficients.get(name, 0.0)
+            rows[:, j] = np.nan_to_num(known.get(name, np.zeros(len(m.t))))
     return rows
+
+
+def force_coefficients(m: MeasuredManeuver) -> dict[str, Array]:
+    """CX CY CZ CD CL (n,) by the outputs ax ay az, so far as these were measured."""
+    V, alpha = filled(m, "V"), filled(m, "alpha")
+    pressure_area = 0.5 * m.rho * V**2 * m.reference.S
+    out = {}
+    for i, (name, output) in enumerate((("CX", "ax"), ("CY", "ay"), ("CZ", "az"))):
+        if output in m.outputs:
+            out[name] = (m.mass * m.outputs[output] - m.force[:, i]) / pressure_area
+    if "CX" in out and "CZ" in out:
+        sin, cos = np.sin(alpha), np.cos(alpha)
+        out["CD"] = -out["CX"] * cos - out["CZ"] * sin
+        out["CL"] = out["CX"] * sin - out["CZ"] * cos
+    return out
+
+
+def filled(m: MeasuredManeuver, name: str) -> Array:
+    """A variable (n,) as measured, the motion's where there is no reading."""
+    reading = m.outputs.get(name, m.motion[name])
+    out: Array = np.where(np.isfinite(reading), reading, m.motion[name])
+    return out
