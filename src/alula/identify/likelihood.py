@@ -113,7 +113,7 @@ def assembled(
 
     Where the search failed no parameter has a value: a point that is no maximum has no error bars.
     """
-    if not np.isfinite(found.information).all() or not found.information.any():
+    if not blocks or not np.isfinite(found.information).all() or not found.information.any():
         return _failed(method, names, belongs, found, messages)
     fit = regression_at(names, found.value, blocks, ordinates)
     none = np.zeros((len(names), len(names)))
