@@ -238,6 +238,13 @@ class IdentifySpec(Strict):
     coefficients_from: Literal["motion", "recorded"] = "motion"
     models: dict[str, str] = {}
     options: dict[str, Option] = {}
+    hold_out: float = Field(
+        default=0.2,
+        ge=0.0,
+        le=0.5,
+        description="share of the maneuvers held out where none is marked and there are five or "
+        "more of an aspect; 0: none",
+    )
 
 
 class Project(Strict):

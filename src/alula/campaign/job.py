@@ -15,6 +15,7 @@ from alula.base.messages import Message, note, refuse
 from alula.base.project import Project
 from alula.base.provenance import provenance
 from alula.campaign.check import Checked, Progress, check_project
+from alula.campaign.hold_out import with_held_out
 from alula.campaign.measured import engines_of, measured_maneuvers
 from alula.campaign.methods import IDENTIFIERS, IdentifyTask, identify_by, method_name
 from alula.flight import Flight, Maneuver
@@ -70,7 +71,7 @@ def run_project(
     Raises BadInput for what cannot be used.
     """
     stamps = [time.perf_counter()]
-    checked = check_project(path, only, progress)
+    checked = with_held_out(check_project(path, only, progress), seed or 0)
     project = checked.project
     chosen = method_name(method or project.identify.method)
     stamps.append(time.perf_counter())

@@ -125,6 +125,11 @@ def result_of(job: Job) -> dict[str, Any]:
             }
             for p in found.parameters
         ],
+        "formulas": dict(found.formulas) or {c: f.formula for c, f in found.fits.items()},
+        "maneuvers": {
+            "learned": [m.id for m in job.checked.maneuvers if not m.held_out],
+            "held_out": [m.id for m in job.checked.maneuvers if m.held_out],
+        },
         "fit": {
             name: {
                 "formula": f.formula,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from textwrap import wrap
+
 from alula.identify.result import Identification, Parameter
 
 _WIDTH = 104
@@ -24,7 +26,10 @@ def summary(result: Identification) -> str:
     lines += ["-" * _WIDTH, _header(result), "-" * _WIDTH]
     lines += [_row(p, _name_width(result)) for p in result.parameters]
     lines += ["=" * _WIDTH, result.status]
-    lines += [f"{name}: {f.diagnostics.words}" for name, f in result.fits.items() if f.diagnostics]
+    for name, fit in result.fits.items():
+        if fit.diagnostics:
+            words = f"{name}: {fit.diagnostics.words}"
+            lines += wrap(words, _WIDTH, subsequent_indent="    ")
     unseen = [name for name, fit in result.fits.items() if not fit.n_held_out]
     if unseen:
         lines.append(
