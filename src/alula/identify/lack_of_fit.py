@@ -6,9 +6,10 @@ explain. The classical F test sets the model's misfit against it (Draper and Smi
 Regression Analysis, 1998, section 2.1; near replicates: Daniel and Wood, 1980, section 7.5).
 
 Flight data never repeat exactly and neighboring samples are no independent repetitions. So the
-space of the variables is cut into cells; one passage of the motion through a cell counts once, as
-its mean; and passages count only if they lie further apart than the residuals remember. Slopes
-within a cell are left to the model. Too few repetitions are said, not tested.
+space of the variables is cut into cells; one passage of the motion through a cell counts once, by
+the sample in its middle (means would differ in their variance); and passages count only if they lie
+further apart than the residuals remember. Slopes within a cell are left to the model. Too few
+repetitions are said, not tested.
 """
 
 from __future__ import annotations
@@ -83,7 +84,7 @@ def _test(left: Array, cells: Array, dof: tuple[int, int]) -> LackOfFit:
 def _passages(
     fit: Regression, conditions: Sequence[Array], width: Array
 ) -> tuple[Array, Array, Array]:
-    """Mean regressors (m, k), mean measured (m,) and cell (m,) of every independent passage."""
+    """Regressors (m, k), measured (m,) and cell (m,) of every independent passage."""
     x, z, keys = [], [], []
     for weight, block, v, c in zip(fit.weights, fit.blocks, fit.residuals, conditions, strict=True):
         gap = _memory(v)
@@ -91,13 +92,14 @@ def _passages(
         changes = np.flatnonzero(np.any(np.diff(place, axis=0) != 0, axis=1)) + 1
         last = -gap
         for start, end in zip([0, *changes.tolist()], [*changes.tolist(), len(v)], strict=True):
-            if start - last < gap:
+            middle = (start + end) // 2
+            if middle - last < gap:
                 continue
-            last = end
+            last = middle
             root = np.sqrt(weight)
-            x.append(root * block.regressors[start:end].mean(axis=0))
-            z.append(root * float(block.measured[start:end].mean()))
-            keys.append(tuple(place[start].tolist()))
+            x.append(root * block.regressors[middle])
+            z.append(root * float(block.measured[middle]))
+            keys.append(tuple(place[middle].tolist()))
     if not keys:
         return np.zeros((0, len(fit.names))), np.zeros(0), np.zeros(0)
     cells = np.unique(np.array(keys), axis=0, return_inverse=True)[1].ravel()
