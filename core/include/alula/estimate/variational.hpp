@@ -128,7 +128,26 @@ inline void base_slots(const VariationalPlan<axes>& plan, const MotionState<L, M
   if (plan.uses[kMach]) slots[kMach] = D(u[kInSlowness] * s.V);
 }
 
-// One coefficient with the slope of its own direction: the states act on it beside that.
+// The directions as rows of slopes: a seed is added whole, since an element put into a register
+// would have to go through memory.
+template <int N>
+struct Directions {
+  double row[N][N] = {};
+  constexpr Directions() {
+    for (int i = 0; i < N; ++i) row[i][i] = 1.0;
+  }
+};
+template <int N>
+inline constexpr Directions<N> kDirectionRows{};
+
+template <int N>
+inline void seed(Dual<double, N>& x, int direction) {
+  using Block = typename Dual<double, N>::Block;
+  for (int i = 0; i < Dual<double, N>::kBlocks; ++i)
+    x.slope[i] += Block::load(kDirectionRows<N>.row[direction] + 4 * i);
+}
+
+// One coefficient with a slope of one along its own direction, beside what the states do to it.
 template <Axes axes, class D>
 inline D seeded_force(const VariationalPlan<axes>& plan, int force, const D* slots,
                       const double* u) {
@@ -137,6 +156,7 @@ inline D seeded_force(const VariationalPlan<axes>& plan, int force, const D* slo
     const auto& term = plan.terms[force][k];
     sum += term.value * slots[term.slot];
   }
+  seed(sum, Kernel<axes>::kStates + force);
   return sum;
 }
 
@@ -159,8 +179,10 @@ inline void evaluate(const VariationalPlan<axes>& plan, const double* x, const d
   const MeasuredManeuver& m = *plan.m;
 
   D seeded[K::kStates];
-  for (int i = 0; i < K::kStates; ++i)
-    seeded[i] = plan.is_state[i] ? D::variable(x[i], i) : D(u[kInMotion + K::state[i]]);
+  for (int i = 0; i < K::kStates; ++i) {
+    seeded[i] = D(plan.is_state[i] ? x[i] : u[kInMotion + K::state[i]]);
+    if (plan.is_state[i]) detail::seed(seeded[i], i);
+  }
   MotionState<L, M> s;
   if constexpr (axes == Axes::longitudinal)
     s = {seeded[0],      seeded[1],   seeded[2],   seeded[3],
@@ -177,17 +199,13 @@ inline void evaluate(const VariationalPlan<axes>& plan, const double* x, const d
   constexpr int lift = force_of<axes>(kLift);
   fill_slots(*m.table, slots, m.lookups, [&](const D* filled) {
     if constexpr (lift < 0) return D(u[kInCoefficients + kLift]);
-    D c = detail::seeded_force(plan, lift < 0 ? 0 : lift, filled, u);
-    c.set_slope(K::kStates + (lift < 0 ? 0 : lift), 1.0);
-    return c;
+    return detail::seeded_force(plan, lift < 0 ? 0 : lift, filled, u);
   });
   std::array<D, kCoefficients> C;
   for (int c = 0; c < kCoefficients; ++c)
     if (force_of<axes>(c) < 0) C[static_cast<unsigned>(c)] = D(u[kInCoefficients + c]);
   for (int c = 0; c < K::kForces; ++c) {
-    D& force = C[static_cast<unsigned>(K::coefficient[c])];
-    force = detail::seeded_force(plan, c, slots, u);
-    force.set_slope(K::kStates + c, 1.0);
+    C[static_cast<unsigned>(K::coefficient[c])] = detail::seeded_force(plan, c, slots, u);
   }
   flight_equations<axes, D>(s, C, u, m, out.y);
 
