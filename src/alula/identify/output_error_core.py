@@ -53,7 +53,10 @@ def input_rows(m: MeasuredManeuver, model: AeroModel) -> Array:
     Coefficients without a formula come as measured: as the maneuver has them, else those of forces
     from its specific forces.
     """
-    known = {**force_coefficients(m), **m.coefficients}
+    wanted = [c for c in AXES[model.axes] if c not in model.coefficients]
+    known = dict(m.coefficients)
+    if any(c not in known for c in wanted):
+        known = {**force_coefficients(m), **known}
     rows = np.zeros((len(m.t), 28))
     for j, name in enumerate(STATES):
         rows[:, j] = m.motion[name]
@@ -64,8 +67,8 @@ def input_rows(m: MeasuredManeuver, model: AeroModel) -> Array:
     rows[:, 15:18] = m.force
     rows[:, 18:21] = m.moment
     for j, name in enumerate(AXES[model.axes], start=21):
-        if name not in model.coefficients:
-            rows[:, j] = np.nan_to_num(known.get(name, np.zeros(len(m.t))))
+        if name in wanted and name in known:
+            rows[:, j] = np.where(np.isfinite(known[name]), known[name], 0.0)
     return rows
 
 

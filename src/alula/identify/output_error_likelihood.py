@@ -43,8 +43,10 @@ class OutputErrorLikelihood:
 
     def __init__(self, problem: Problem, variance: Array | None = None) -> None:
         self.problem, self.known = problem, variance
-        squares = [np.nanmean(r**2, axis=0) for r in problem.readings]
-        self.least = np.maximum(SMALLEST * np.mean(squares, axis=0), 1e-300)
+        self.least = np.zeros(0)
+        if variance is None:
+            squares = [np.nanmean(r**2, axis=0) for r in problem.readings]
+            self.least = np.maximum(SMALLEST * np.mean(squares, axis=0), 1e-300)
         self._at: tuple[Array, Point | None] | None = None
 
     def __call__(self, theta: Array, derivatives: bool) -> Point | None:
