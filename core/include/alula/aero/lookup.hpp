@@ -143,4 +143,11 @@ constexpr S lookup(const Lookup<T>& table, const S& a, const S& b, const S& c) {
   return sum;
 }
 
+// Each lane for itself.
+template <class T, int W>
+Lanes<T, W> lookup(const Lookup<T>& table, const Lanes<T, W>& a, const Lanes<T, W>& b,
+                   const Lanes<T, W>& c) {
+  return Lanes<T, W>::from([&](int i) { return lookup(table, a[i], b[i], c[i]); });
+}
+
 }  // namespace alula
