@@ -147,7 +147,9 @@ constexpr S lookup(const Lookup<T>& table, const S& a, const S& b, const S& c) {
 template <class T, int W>
 Lanes<T, W> lookup(const Lookup<T>& table, const Lanes<T, W>& a, const Lanes<T, W>& b,
                    const Lanes<T, W>& c) {
-  return Lanes<T, W>::from([&](int i) { return lookup(table, a[i], b[i], c[i]); });
+  T value[W];
+  for (int i = 0; i < W; ++i) value[i] = lookup(table, a[i], b[i], c[i]);
+  return Lanes<T, W>::load(value);
 }
 
 }  // namespace alula

@@ -261,11 +261,11 @@ inline Lanes<T, W> atan2(Lanes<T, W> y, Lanes<T, W> x) {
 #if defined(ALULA_VECTOR_LANES)
   const L zero(T(0)), one(T(1));
   const L ay = select(y < zero, -y, y), ax = select(x < zero, -x, x);
-  const auto steep = ay > ax;  // the quotient stays within [0, 1]
-  const L large = select(steep, ay, ax);
-  const L t = select(steep, ax, ay) / select(large > zero, large, one);
-  const auto upper = t > L(T(0.4142135623730950488));  // tan(pi/8)
-  const L u = select(upper, (t - one) / (t + one), t);
+  const auto steep = ay > ax;  // the quotient t stays within [0, 1]
+  const L large = select(steep, ay, ax), small = select(steep, ax, ay);
+  const auto upper = small > L(T(0.4142135623730950488)) * large;  // tan(pi/8); then (t - 1)/(t + 1)
+  const L u = select(upper, small - large, small) /
+              select(large > zero, select(upper, small + large, large), one);
   const L z = u * u;
   L p = L(T(-8.750608600031904122785e-1));
   p = p * z + L(T(-1.615753718733365076637e1));

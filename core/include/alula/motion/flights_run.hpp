@@ -16,46 +16,47 @@ struct OneOfMany {
   int flown = 0;  // samples before the state stopped being finite; all where it never did
 };
 
+template <class T, int W>
+void set_lane(Vec3<Lanes<T, W>>& v, int w, const Vec3<T>& one) {
+  v.x.set(w, one.x);
+  v.y.set(w, one.y);
+  v.z.set(w, one.z);
+}
+
 // Flies W flights at once through samples that are dt (s) apart. Each is flown as if it were alone:
 // its numbers do not depend on the others, be they finite or not. Turbulence and pilots are not in.
 template <int W, class T>
 void fly_side_by_side(const AircraftModel<T>& a, int samples, int substeps, T dt, bool hold,
                       const std::array<OneOfMany<T>*, W>& flights) {
   using S = Lanes<T, W>;
-  const auto of_each = [&flights](auto&& value) {
-    return S::from([&](int w) { return value(*flights[static_cast<unsigned>(w)]); });
-  };
-  const auto vector_of_each = [&of_each](Vec3<T> Wind<T>::* v) {
-    return Vec3<S>{of_each([v](const auto& f) { return (f.wind.*v).x; }),
-                   of_each([v](const auto& f) { return (f.wind.*v).y; }),
-                   of_each([v](const auto& f) { return (f.wind.*v).z; })};
-  };
-  Wind<S> wind;
-  wind.steady = vector_of_each(&Wind<T>::steady);
-  wind.shear = vector_of_each(&Wind<T>::shear);
-  wind.reference_height = of_each([](const auto& f) { return f.wind.reference_height; });
-  wind.logarithmic = flights[0]->wind.logarithmic;
-  wind.roughness = of_each([](const auto& f) { return f.wind.roughness; });
-  wind.ground = of_each([](const auto& f) { return f.wind.ground; });
-
   const int n = a.layout.size;
   const T h = dt / T(substeps);
-  const auto input_at = [&](int sample, FlightInput<S>& u) {
-    for (unsigned j = 0; j < 6; ++j) {
-      const long at = static_cast<long>(sample) * 6 + j;
-      u[j] = of_each([at](const auto& f) { return f.controls[at]; });
-      u[kGustInput + j] =
-          of_each([at](const auto& f) { return f.gusts == nullptr ? T(0) : f.gusts[at]; });
-    }
-  };
   FlightState<S> x, k;
   x.length = k.length = n;
-  for (int j = 0; j < n; ++j) x[j] = of_each([j](const auto& f) { return f.start[j]; });
+  Wind<S> wind;
+  wind.logarithmic = flights[0]->wind.logarithmic;
   bool flying[W];
   for (int w = 0; w < W; ++w) {
+    OneOfMany<T>& f = *flights[static_cast<unsigned>(w)];
+    for (int j = 0; j < n; ++j) x[j].set(w, f.start[j]);
+    set_lane(wind.steady, w, f.wind.steady);
+    set_lane(wind.shear, w, f.wind.shear);
+    wind.reference_height.set(w, f.wind.reference_height);
+    wind.roughness.set(w, f.wind.roughness);
+    wind.ground.set(w, f.wind.ground);
     flying[w] = true;
-    flights[static_cast<unsigned>(w)]->flown = samples;
+    f.flown = samples;
   }
+  const auto input_at = [&flights](int sample, FlightInput<S>& u) {
+    const long row = static_cast<long>(sample) * 6;
+    for (int w = 0; w < W; ++w) {
+      const OneOfMany<T>& f = *flights[static_cast<unsigned>(w)];
+      for (unsigned j = 0; j < 6; ++j) {
+        u[j].set(w, f.controls[row + j]);
+        u[kGustInput + j].set(w, f.gusts == nullptr ? T(0) : f.gusts[row + j]);
+      }
+    }
+  };
   // Writes sample i of all that still fly; false where none does.
   const auto write = [&](int i, const FlightOutput<S>& y, const FlightInput<S>& u) {
     S total(T(0));
@@ -77,7 +78,7 @@ void fly_side_by_side(const AircraftModel<T>& a, int samples, int substeps, T dt
     return some;
   };
 
-  FlightInput<S> now, next, u0, mid, u1;
+  FlightInput<S> now{}, next{}, u0, mid, u1;
   FlightOutput<S> y;
   input_at(0, now);
   for (int i = 0; i < samples; ++i) {

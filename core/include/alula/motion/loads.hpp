@@ -90,7 +90,9 @@ void add_aerodynamics(const FlightState<S>& x, const FlightInput<S>& u, const Ai
 
   const S plane = sqrt(v.x * v.x + v.z * v.z);
   const auto ahead = plane > S(kLeastAirspeed);  // else alpha is taken as zero
-  const S cosine = select(ahead, S(v.x / plane), S(1)), sine = select(ahead, S(v.z / plane), S(0));
+  const S inverse = S(1) / plane;
+  const S cosine = select(ahead, S(inverse * v.x), S(1));
+  const S sine = select(ahead, S(inverse * v.z), S(0));
   if (a.stalls) add_stall(x, a, sine, cosine, out);
   S CX = C[0], CZ = C[2];
   if (a.stability_axes) {

@@ -22,7 +22,7 @@ struct PropellerLoads {
 // n^2 times a coefficient over J. Outside the knots the coefficient is a line in J, and n^2 J is
 // n V/D, so nothing is divided by n there: zero where the propeller stands, with finite slopes.
 template <class S, class T>
-constexpr S times_speed_squared(const Curve<T>& c, const S& n, const S& V_over_D) {
+constexpr S times_speed_squared(const Curve<T>& c, const S& n, const S& V_over_D, const S& J) {
   if (c.count == 0) return S(0);
   const auto speed = value_of(n), advance = value_of(V_over_D);
   const auto between =
@@ -36,7 +36,6 @@ constexpr S times_speed_squared(const Curve<T>& c, const S& n, const S& V_over_D
     outside = n * (n * at_zero + select(before, S(low[1]), S(high[1])) * V_over_D);
   }
   if (!any(between)) return outside;
-  const S J = V_over_D / select(between, n, S(1));
   return select(between, S(n * n * curve(c, J)), outside);
 }
 
@@ -51,8 +50,9 @@ constexpr PropellerLoads<S> propeller_loads(const Propeller<T>& p, const S& omeg
   const S V_over_D = (T(1) / p.diameter) * axial_speed;
   const T D2 = p.diameter * p.diameter;
   const S scale = (D2 * D2) * density;
-  return {scale * times_speed_squared(p.CT, n, V_over_D),
-          T(1.0 / kTurn) * p.diameter * scale * times_speed_squared(p.CP, n, V_over_D)};
+  const S J = V_over_D / select(value_of(n) > T(0), n, S(1));
+  return {scale * times_speed_squared(p.CT, n, V_over_D, J),
+          T(1.0 / kTurn) * p.diameter * scale * times_speed_squared(p.CP, n, V_over_D, J)};
 }
 
 }  // namespace alula
