@@ -239,7 +239,12 @@ def as_flight(
     inputs: Array,
     messages: tuple[Message, ...],
 ) -> SimulatedFlight:
-    """What the core wrote at times t (n,) as a flight. names: of the further states."""
+    """What the core wrote at times t (n,) as a flight; names: of the further states.
+
+    states and inputs belong to the flight from here on and can no more be written to.
+    """
+    states.setflags(write=False)
+    inputs.setflags(write=False)
     euler, R, where = _attitudes(states, airframe.earth)
     ax, ay, az, pdot, qdot, rdot, V, alpha, beta, mach, rho = (frozen(c) for c in outputs.T[:11])
     p, q, r = (frozen(c) for c in states.T[10:13])
@@ -271,9 +276,9 @@ def as_flight(
         air_velocity=frozen(V[:, None] * air),
         mach=mach,
         states=further,
-        inputs=frozen(inputs),
+        inputs=inputs,
         engine_force=frozen(outputs[:, 17:20]),
         engine_moment=frozen(outputs[:, 20:23]),
-        plant_states=frozen(states),
+        plant_states=states,
         messages=(*messages, *outside_validity(model, motion, mach)),
     )

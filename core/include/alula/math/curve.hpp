@@ -91,9 +91,10 @@ constexpr S curve(const Curve<T>& c, const S& x) {
 template <class T, int W>
 Lanes<T, W> curve(const Curve<T>& c, const Lanes<T, W>& x) {
   using L = Lanes<T, W>;
-  L passed(T(0));
+  const L none(T(0)), one(T(1));
+  L passed = none;
   for (unsigned i = 1; i < static_cast<unsigned>(c.count); ++i)
-    passed += select(x < L(c.knot[i]), L(T(0)), L(T(1)));
+    passed += select(x < L(c.knot[i]), none, one);
   unsigned piece[W];
   for (int w = 0; w < W; ++w) piece[w] = static_cast<unsigned>(passed[w]);
   const auto coefficient = [&](unsigned k) {

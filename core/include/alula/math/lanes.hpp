@@ -293,10 +293,10 @@ inline Lanes<T, W> atan2(Lanes<T, W> y, Lanes<T, W> x) {
 template <class T, int W>
 inline Lanes<T, W> exp(Lanes<T, W> x) {
   using L = Lanes<T, W>;
-#if defined(ALULA_VECTOR_LANES)
   using K = detail::Trig<T>;
   const L end(K::largest_exponent);
   x = select(x > end, end, select(x < -end, -end, x));
+#if defined(ALULA_VECTOR_LANES)
   const L shifted = x * L(T(1.44269504088896340736)) + L(K::magic);
   const L k = shifted - L(K::magic);
   const L r = (x - k * L(T(6.93145751953125e-1))) - k * L(T(1.42860682030941723212e-6));
@@ -348,7 +348,10 @@ inline Lanes<T, W> log(Lanes<T, W> x) {
   const L rest = m * (z * p / q) - e * L(T(2.121944400546905827679e-4)) - L(T(0.5)) * z;
   return select(inside, (m + rest) + e * L(T(0.693359375)), L(Limits::quiet_NaN()));
 #else
-  return L::from([&x](int i) { return x.v[i] > 0 ? std::log(x.v[i]) : std::log(T(-1)); });
+  return L::from([&x](int i) {
+    using Limits = std::numeric_limits<T>;
+    return x.v[i] > 0 && x.v[i] < Limits::infinity() ? std::log(x.v[i]) : Limits::quiet_NaN();
+  });
 #endif
 }
 
