@@ -1,9 +1,11 @@
 // Flying an aircraft, its rates and its exact linearization.
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/tuple.h>
 
 #include <cmath>
 #include <cstring>
 #include <optional>
+#include <tuple>
 
 #include "aircraft.hpp"
 #include "alula/motion/flight_run.hpp"
@@ -105,13 +107,16 @@ void rates(const Aircraft& self, Vector x, Vector u, VectorOut dx, VectorOut y) 
   std::memcpy(y.data(), output.data(), sizeof output);
 }
 
-nb::tuple jacobian(const Aircraft& self, Vector x, Vector u) {
+using Numpy = nb::ndarray<nb::numpy, double>;
+using Jacobians = std::tuple<Numpy, Numpy, Numpy, Numpy>;
+
+Jacobians jacobian(const Aircraft& self, Vector x, Vector u) {
   const int n = self.model.layout.size;
   Array<double> A({n, n}), B({n, alula::kFlightInputs});
   Array<double> C({alula::kFlightOutputs, n}), D({alula::kFlightOutputs, alula::kFlightInputs});
   alula::jacobian(state_from(self, x), input_from(u), self.model, A.data(), B.data(), C.data(),
                   D.data());
-  return nb::make_tuple(A.numpy(), B.numpy(), C.numpy(), D.numpy());
+  return {A.numpy(), B.numpy(), C.numpy(), D.numpy()};
 }
 
 // The first thirteen states, and charge and fuel, as given; the others as they settle.

@@ -1,4 +1,8 @@
 // Attitudes, and what sensors make of a motion.
+#include <nanobind/stl/tuple.h>
+
+#include <tuple>
+
 #include "alula/math/quaternion.hpp"
 #include "alula/motion/place.hpp"
 #include "alula/motion/tumbling.hpp"
@@ -102,8 +106,7 @@ void bind_simulate(nb::module_& m) {
         const Mat3<double> J{{row3(inertia, 0), row3(inertia, 1), row3(inertia, 2)}};
         nb::gil_scoped_release unlocked;
         const auto d = alula::tumble(J, Vec3<double>{rates(0), rates(1), rates(2)}, dt, steps);
-        nb::gil_scoped_acquire locked;
-        return nb::make_tuple(d.energy, d.magnitude, d.direction);
+        return std::tuple{d.energy, d.magnitude, d.direction};
       },
       nb::arg("inertia"), nb::arg("rates"), nb::arg("dt"), nb::arg("steps"),
       "Largest relative drift, over a torque-free rotation, of energy, of the length of the\n"

@@ -7,7 +7,6 @@ are read from the cases' own DAVE-ML files. The spread between NASA's simulators
 
 from __future__ import annotations
 
-import os
 import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass
 from pathlib import Path
@@ -202,7 +201,8 @@ def apart(
 
 def check(quick: bool = False) -> tuple[str, bool]:
     """All cases: what was found in words, and whether each is inside its tolerance."""
-    root = Path(os.environ.get("ALULA_DATA", Path(__file__).parents[3] / "shared" / "data"))
+    from verification.run import DATA as root
+
     holds, words = True, []
     for number, case in CASES.items():
         ours = flown(root, number, 0.01 if quick else 0.002)

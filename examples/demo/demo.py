@@ -1,7 +1,7 @@
-"""The main job on an example that the project makes itself: `make demo`.
+"""The main job on a flight campaign that the project flies itself: `make demo`.
 
-Two maneuvers of a light aircraft are simulated with sensor errors, their logs written, and the
-derivatives identified from the logs and set beside the truth.
+`alula fly` flies campaign.toml, with sensor errors, and writes logs and truth; `alula identify`
+takes the logs and sets what it finds beside the truth.
 """
 
 from __future__ import annotations
@@ -11,38 +11,36 @@ import subprocess
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parent))
+HERE = Path(__file__).resolve().parent
 
-from make_logs import simulate_demo
+
+def alula(*words: object) -> int:
+    """Run the command; its exit code."""
+    return subprocess.run([sys.executable, "-m", "alula", *map(str, words)], check=False).returncode
 
 
 def main() -> int:
-    """Simulate, identify, report; the exit code is that of `alula identify`."""
+    """Fly, identify, report; the exit code is that of the command that ended it."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--folder", type=Path, default=Path("build/demo"))
     parser.add_argument("--seed", type=int, default=2)
     args = parser.parse_args()
     args.folder.mkdir(parents=True, exist_ok=True)
-    files = simulate_demo(args.seed, args.folder)
-    report = args.folder / "report.html"
-    print(f"Simulated {', '.join(str(log) for log in files.logs)}\n", flush=True)
-    done = subprocess.run(
-        [
-            sys.executable,
-            "-m",
-            "alula",
-            "identify",
-            str(files.project),
-            "--truth",
-            str(files.truth),
-            "--report",
-            str(report),
-            "--seed",
-            str(args.seed),
-        ],
-        check=False,
+    campaign = args.folder / "campaign"
+    code = alula("fly", HERE / "campaign.toml", "--out", campaign, "--seed", args.seed)
+    if code:
+        return code
+    print(flush=True)
+    return alula(
+        "identify",
+        campaign / "campaign.toml",
+        "--truth",
+        campaign / "truth.json",
+        "--report",
+        args.folder / "report.html",
+        "--seed",
+        args.seed,
     )
-    return done.returncode
 
 
 if __name__ == "__main__":

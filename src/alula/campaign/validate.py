@@ -14,12 +14,11 @@ from alula.base.messages import Message, note, refuse, warn
 from alula.base.provenance import provenance
 from alula.campaign.check import Checked, Progress, check_project
 from alula.campaign.job import (
-    IDENTIFIERS,
     NOTHING_ASKED,
     Job,
-    _method,
     _models,
     coefficient_data,
+    identify_project,
 )
 from alula.campaign.learned import LEARNED, learned_from, seen_by
 from alula.flight import Maneuver
@@ -91,8 +90,9 @@ def run_validation(
         progress("identifying")
         models, said = _models(project, checked.maneuvers)
         messages += said
-        identifier = IDENTIFIERS[_method(project.identify.method)]
-        identification = identifier(data, models, project.identify.options, None)
+        identification = identify_project(
+            checked, reconstruction, data, models, project.identify.method, seed=seed or 0
+        )
         learned = [d for d in data if not d.maneuver.held_out]
         given = identified_model(
             identification,

@@ -10,20 +10,18 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from alula.aircraft import Aircraft
 from alula.base.messages import Message, refuse, warn
 from alula.model import AeroModel
 from alula.plan.amplitude import Limits, largest_amplitude, limits_of, outside
 from alula.plan.information import Flown, Prediction, predict
 from alula.plan.widths import Timing, timing
-from alula.simulate.airframe import airframe_of, core_model
+from alula.simulate.airframe import core_model
 from alula.simulate.fly import SimulatedFlight
 from alula.simulate.linearize import linearize
 from alula.simulate.modes import Mode, modes_of
 from alula.simulate.trim import Trim
-from alula.simulate.virtual_flight import fly_maneuver, trimmed
+from alula.simulate.virtual_flight import airframe, fly_maneuver, trimmed
 from alula.simulate.virtual_loading import Loading, loadings_of
 from alula.simulate.virtual_maneuvers import DEG, maneuvers_of
 from alula.simulate.virtual_plan import Plan
@@ -120,10 +118,11 @@ def design(
     loading = next(iter(loadings_of(planned(tree)).values()))
     craft = loading.aircraft
     condition = maneuvers_of(planned(tree))[0].condition
-    trim = trimmed(loading, model, condition, np.array(wind, dtype=np.float64))
-    plant = core_model(airframe_of(craft), model)
-    level = trimmed(loading, model, condition, np.zeros(3))
-    linear = linearize(plant, level.state, {**level.controls, "thrust": level.thrust})
+    trim = trimmed(planned(tree), loading, model, condition)
+    calm = planned({**tree, "wind": [0.0, 0.0, 0.0]})
+    frame = airframe(calm, loading)
+    level = trimmed(calm, loading, model, condition)
+    linear = linearize(core_model(frame, model), level.state, level.inputs)
     modes = modes_of(linear.motion(), V)
     limits = limits_of(replace(craft, path=str(aircraft)), model)
     desk = _Desk(tree, loading, model, trim, limits)
@@ -132,7 +131,6 @@ def design(
     plan = planned(tree)
     formulas = formulas_of(plan, model)
     sigma = {n: plan.sensors[n].in_si(plan.sensors[n].sigma) for n in plan.sensors}
-    frame = airframe_of(craft)
     flown = [Flown(f.motion, frame.mass, frame.inertia) for _, _, f in done]
     maneuvers = tuple(
         DesignedManeuver(

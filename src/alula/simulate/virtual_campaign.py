@@ -10,8 +10,6 @@ from __future__ import annotations
 import io
 import json
 import os
-import shutil
-import tempfile
 import time
 from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
@@ -21,27 +19,21 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from alula.aircraft import load_aircraft
 from alula.base.arrays import Array
 from alula.base.messages import BadInput, Message, refuse
 from alula.model import AeroModel, load_model, model_text
 from alula.simulate.trim import Trim
-from alula.simulate.virtual_flight import (
-    Flown,
-    channels_of,
-    constants_of,
-    fly_maneuver,
-    logged,
-    sense,
-    trimmed,
-)
+from alula.simulate.virtual_flight import Flown, fly_maneuver, trimmed
+from alula.simulate.virtual_folder import PROJECT, TRUTH, NewFolder, check_folder, save
 from alula.simulate.virtual_loading import MODEL, Loading, loadings_of
 from alula.simulate.virtual_maneuvers import Condition, VirtualManeuver, maneuvers_of
 from alula.simulate.virtual_plan import Plan
-from alula.simulate.virtual_project import PROJECT, project_text
+from alula.simulate.virtual_project import project_text
+from alula.simulate.virtual_sensing import channels_of, constants_of, errors_of, logged, sense
 
-TRUTH = "truth.json"
 Progress = Callable[[str], None]
 
 
@@ -96,15 +88,16 @@ def fly_plan(
     Raises BadInput where nothing can be flown, or the folder holds something else.
     """
     begin = time.perf_counter()
-    _check_folder(folder)
+    check_folder(folder)
     seed = plan.seed if seed is None else seed
     loadings = loadings_of(plan)
     model = load_model(_model_path(plan))
     asked = maneuvers_of(plan)
     channels = channels_of(plan, loadings)
     constants = constants_of(plan, seed)
+    errors = errors_of(plan, channels, constants)
     workers = threads or os.cpu_count() or 1
-    with _new_folder(folder) as new, ThreadPoolExecutor(workers) as pool:
+    with NewFolder(folder) as new, ThreadPoolExecutor(workers) as pool:
         for name in ("logs", "truth"):
             (new / name).mkdir()
         progress(f"trimming {len({(m.loading, m.condition) for m in asked})} conditions")
@@ -118,10 +111,10 @@ def fly_plan(
                 return trim
             loading = loadings[item.loading]
             try:
-                flight = fly_maneuver(plan, item, loading, model, trim)
+                flight = fly_maneuver(plan, item, loading, model, trim, seed)
             except BadInput as error:
                 return error.messages
-            sensed = sense(plan, flight, loading, channels, constants, seed)
+            sensed = sense(plan, flight, loading, errors, seed)
             return _write(Flown(item, flight, trim, sensed), new)
 
         found = list(pool.map(one, asked))
@@ -137,13 +130,13 @@ def fly_plan(
         if not written:
             raise BadInput(*dict.fromkeys(m for ms in failed.values() for m in ms))
         for loading in loadings.values():
-            _save(new / loading.file, loading.text.encode())
-        _save(new / MODEL, model_text(model).encode())
+            save(new / loading.file, loading.text.encode())
+        save(new / MODEL, model_text(model).encode())
         wind = dict(zip(("wind_n", "wind_e", "wind_d"), plan.wind, strict=True))
         truth = {"parameters": model.params, "constants": {**constants, **wind}}
-        _save(new / TRUTH, (json.dumps(truth, indent=1) + "\n").encode())
+        save(new / TRUTH, (json.dumps(truth, indent=1) + "\n").encode())
         text = project_text(plan, model, loadings, [w.plan for w in written], channels)
-        _save(new / PROJECT, text.encode())
+        save(new / PROJECT, text.encode())
     end = time.perf_counter()
     seconds = {
         "trim": trimmed_at - begin, "fly_and_write": flown_at - trimmed_at, "rest": end - flown_at,
@@ -181,7 +174,7 @@ def _trims(
 
     def trim(pair: tuple[str, Condition]) -> Trim | tuple[Message, ...]:
         try:
-            return trimmed(loadings[pair[0]], model, pair[1], np.array(plan.wind))
+            return trimmed(plan, loadings[pair[0]], model, pair[1])
         except BadInput as error:
             return error.messages
 
@@ -195,32 +188,46 @@ def _write(flown: Flown, folder: Path) -> Written:
     import pyarrow.parquet as parquet
 
     motion, id = flown.flight.motion, flown.plan.maneuver.id
-    columns: dict[str, Any] = {"t_s": pa.array(np.round(motion.t, 9))}
+    columns: dict[str, Any] = {"t_s": _column(np.round(motion.t, 9))}
     for name, values in flown.readings.items():
         unit, si = logged(name)
         # A recorder's word has 32 bits: seven digits and a little.
-        columns[f"{name}_{unit}"] = pa.array((values / si).astype(np.float32), from_pandas=True)
+        columns[f"{name}_{unit}"] = _column((values / si).astype(np.float32))
     table = pa.table(columns)
     text = io.BytesIO()
     text.write((",".join(table.column_names) + "\n").encode())
     csv.write_csv(table, text, csv.WriteOptions(include_header=False))
     stored = pa.BufferOutputStream()
-    parquet.write_table(table, stored, compression="zstd")
+    # Noise has no word twice: a dictionary would only cost time.
+    how: dict[str, Any] = {"compression": "zstd", "use_dictionary": False}
+    parquet.write_table(table, stored, **how)
     exact = pa.BufferOutputStream()
-    parquet.write_table(pa.table(_truth(flown)), exact, compression="zstd")
+    truth = {name: _column(values) for name, values in _truth(flown).items()}
+    parquet.write_table(pa.table(truth), exact, **how)
     files = (
         (f"logs/{id}.csv", text.getvalue()),
         (f"logs/{id}.parquet", stored.getvalue().to_pybytes()),
         (f"truth/{id}.parquet", exact.getvalue().to_pybytes()),
     )
     for name, data in files:
-        _save(folder / name, data)
+        save(folder / name, data)
     return Written(
         flown.plan,
         len(motion.t),
         flown.trim,
         tuple(WrittenFile(name, len(data), sha256(data).hexdigest()) for name, data in files),
     )
+
+
+def _column(values: Array | NDArray[np.float32]) -> Any:
+    """An Arrow array over the same memory, NaN as null; pa.array would load pandas first."""
+    import pyarrow as pa
+
+    known = ~np.isnan(values)
+    bits = None if known.all() else pa.py_buffer(np.packbits(known, bitorder="little"))
+    kind = pa.float32() if values.dtype == np.float32 else pa.float64()
+    data = pa.py_buffer(np.ascontiguousarray(values))
+    return pa.Array.from_buffers(kind, len(values), [bits, data])
 
 
 def _truth(flown: Flown) -> dict[str, Array]:
@@ -239,81 +246,3 @@ def _truth(flown: Flown) -> dict[str, Array]:
         out["thrust"] = motion.thrust
     out |= dict(getattr(flight, "states", {}))
     return {name: np.ascontiguousarray(values) for name, values in out.items()}
-
-
-def _save(path: Path, data: bytes) -> None:
-    with path.open("wb") as file:
-        file.write(data)
-        file.flush()
-        os.fsync(file.fileno())
-
-
-def _check_folder(folder: Path) -> None:
-    """A folder that is there already is replaced only if it is empty or an earlier campaign."""
-    found = ""
-    if folder.exists() and not folder.is_dir():
-        found = "a file"
-    elif folder.is_dir() and any(folder.iterdir()) and not _is_campaign(folder):
-        found = "a folder with other files in it"
-    elif not folder.absolute().parent.is_dir():
-        found = f"no folder {folder.absolute().parent}"
-    elif not os.access(folder.absolute().parent, os.W_OK):
-        found = f"no permission to write to {folder.absolute().parent}"
-    if found:
-        raise refuse(
-            "output_not_writable",
-            where=str(folder),
-            expected="a free name, an empty folder, or an earlier campaign to replace",
-            found=found,
-            do="Choose another folder with --out; nothing was done yet.",
-        )
-
-
-def _is_campaign(folder: Path) -> bool:
-    ours = {"logs", "truth", PROJECT, TRUTH, MODEL}
-    names = {p.name for p in folder.iterdir()}
-    return ours <= names and all(n in ours or n.endswith(".toml") for n in names)
-
-
-class _new_folder:
-    """A folder beside `path` that takes its place at the end, or vanishes where something fails."""
-
-    def __init__(self, path: Path) -> None:
-        self.path = path.absolute()
-        self.new = Path()
-
-    def __enter__(self) -> Path:
-        try:
-            self.new = Path(tempfile.mkdtemp(prefix=f".{self.path.name}.", dir=self.path.parent))
-        except OSError as error:
-            raise _not_writable(self.path, error) from None
-        mask = os.umask(0)
-        os.umask(mask)
-        self.new.chmod(0o777 & ~mask)  # mkdtemp makes it private
-        return self.new
-
-    def __exit__(self, kind: type[BaseException] | None, error: object, trace: object) -> None:
-        if kind is None:
-            try:
-                old = Path()
-                if self.path.exists():
-                    old = self.new.with_name(self.new.name + ".old")
-                    self.path.rename(old)
-                self.new.rename(self.path)
-                if old != Path():
-                    shutil.rmtree(old)
-                return
-            except OSError as problem:
-                shutil.rmtree(self.new, ignore_errors=True)
-                raise _not_writable(self.path, problem) from None
-        shutil.rmtree(self.new, ignore_errors=True)
-
-
-def _not_writable(path: Path, error: OSError) -> BadInput:
-    return refuse(
-        "output_not_writable",
-        where=str(path),
-        expected="a folder that exists and can be written to",
-        found=error.strerror or str(error),
-        do="Choose another folder with --out; nothing was written.",
-    )

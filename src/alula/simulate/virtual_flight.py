@@ -1,34 +1,24 @@
-"""One maneuver of a virtual flight test: trimmed, flown, sensed."""
+"""One maneuver of a virtual flight test: trimmed, and flown by whoever has the controls."""
 
 from __future__ import annotations
 
-import hashlib
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 
-from alula.base.arrays import Array
-from alula.base.units import expected_unit, to_si
-from alula.flight import Motion
+from alula.base.arrays import Array, frozen
 from alula.model import AeroModel
-from alula.simulate.airframe import airframe_of
-from alula.simulate.fly import SimulatedFlight, attitudes, fly
-from alula.simulate.sensors import (
-    SensorError,
-    every,
-    flow_angles,
-    readings,
-    specific_force_at,
-    velocity_at,
-)
+from alula.simulate.airframe import Airframe, core_model
+from alula.simulate.fly import SimulatedFlight, fly
+from alula.simulate.pilot_law import Law, floating, holding
 from alula.simulate.trim import Trim, trim_level
 from alula.simulate.virtual_loading import Loading
 from alula.simulate.virtual_maneuvers import Condition, VirtualManeuver
-from alula.simulate.virtual_plan import SENSED, Plan, SensorPlan
-
-# Unit of each channel in the log, where it is not the SI unit itself.
-_LOGGED = {"rad": "deg", "rad/s": "deg/s", "kg": "kg", "1": "1"}
+from alula.simulate.virtual_plan import Plan
+from alula.simulate.virtual_sensing import generator
+from alula.simulate.wind import CosineGust, Turbulence
 
 
 @dataclass(frozen=True)
@@ -41,171 +31,147 @@ class Flown:
     readings: Mapping[str, Array]
 
 
-def trimmed(loading: Loading, model: AeroModel, condition: Condition, wind: Array) -> Trim:
+def airframe(plan: Plan, loading: Loading) -> Airframe:
+    """The airframe of a loading with the engines and actuators that the plan asks for."""
+    return loading.airframe(plan.engines, plan.actuators)
+
+
+def trimmed(plan: Plan, loading: Loading, model: AeroModel, condition: Condition) -> Trim:
     """The steady flight of a condition, within the control limits of the aircraft file.
 
     Raises BadInput where there is none.
     """
-    limits = {k: v for k, v in loading.aircraft.control_limits.items() if k == "de"}
     return trim_level(
-        airframe_of(loading.aircraft, loading.fuel_used),
+        airframe(plan, loading),
         model,
         condition.V,
         condition.h,
         gamma=condition.gamma,
         psi=condition.psi,
         controls={"df": condition.df},
-        limits=limits,
-        wind=wind,
+        limits={k: v for k, v in loading.aircraft.control_limits.items() if k != "df"},
+        wind=np.array(plan.wind),
     )
 
 
 def fly_maneuver(
-    plan: Plan, asked: VirtualManeuver, loading: Loading, model: AeroModel, trim: Trim
+    plan: Plan,
+    asked: VirtualManeuver,
+    loading: Loading,
+    model: AeroModel,
+    trim: Trim,
+    seed: int = 0,
 ) -> SimulatedFlight:
     """The true motion of one maneuver from its trim; nothing in it is random but turbulence.
 
     Deflections stop at the control limits of the aircraft file. Raises BadInput where it diverges.
     """
     t = times(plan, asked)
+    frame, wind, V = airframe(plan, loading), np.array(plan.wind), asked.condition.V
     controls: dict[str, Array | float] = {**trim.controls, "thrust": trim.thrust}
+    limits = dict(loading.aircraft.control_limits)
     for name, signal in asked.signals.items():
-        low, high = loading.aircraft.control_limits.get(name, (-np.inf, np.inf))
+        low, high = limits.get(name, (-np.inf, np.inf))
         controls[name] = np.clip(trim.controls[name] + signal.value(t), low, high)
-    return fly(
-        airframe_of(loading.aircraft, loading.fuel_used),
-        model,
-        trim.state,
-        t,
-        controls,
-        wind=np.array(plan.wind),
-        substeps=max(1, int(np.ceil(1.0 / (plan.rate * plan.step) - 1e-9))),
-        maneuver=asked.maneuver,
-    )
+    same: dict[str, Any] = {
+        "wind": wind,
+        "substeps": max(1, int(np.ceil(1.0 / (plan.rate * plan.step) - 1e-9))),
+        "maneuver": asked.maneuver,
+    }
+    hands = _hands(plan, asked, frame, model, trim)
+    air = _air(plan, asked, t, V)
+    if plan.turbulence is not None:
+        spec = plan.turbulence
+        eddies = Turbulence(
+            spec.wind_20ft,
+            spec.sigma,
+            int(generator(seed, f"{asked.maneuver.id}/air").integers(2**31)),
+        )
+        # Flown once for the air alone, so that pilots may change hands in the same turbulence.
+        holding_on = hands[0][2] if hands else None
+        still: dict[str, Array | float] = {**trim.controls, "thrust": trim.thrust}
+        air = fly(
+            frame, model, trim.state, t, still, gusts=air, turbulence=eddies,
+            pilot=None if holding_on is None else holding_on.pilot(limits), **same,
+        ).inputs[:, 6:]  # fmt: skip
+    parts, state = [], trim.state
+    for begin, end, law in hands or [(0, len(t) - 1, None)]:
+        cut = slice(begin, end + 1)
+        now = {
+            k: v[cut] if isinstance(v, np.ndarray) and v.ndim else v for k, v in controls.items()
+        }
+        part = fly(
+            frame, model, state, t[cut], now, gusts=None if air is None else air[cut],
+            pilot=None if law is None else law.pilot(limits), **same,
+        )  # fmt: skip
+        parts.append(part)
+        state = part.plant_states[-1]
+    return joined(parts)
+
+
+def _hands(
+    plan: Plan, asked: VirtualManeuver, frame: Airframe, model: AeroModel, trim: Trim
+) -> list[tuple[int, int, Law | None]]:
+    """Who steers from which sample to which: the holding pilot, nobody, who keeps an axis, or the
+    floating surfaces. Empty where nobody has anything to do.
+    """
+    calm = plan.gust is None and plan.turbulence is None
+    keeps = list(plan.pilot.keeps)
+    holds = plan.pilot.hold and not calm  # in calm air a trimmed aircraft stays
+    if not (holds or keeps or asked.free):
+        return []
+    plant, V = core_model(frame, model, np.array(plan.wind)), asked.condition.V
+    law = holding(plant, trim, V)
+    n = round(asked.maneuver.end * plan.rate)
+    first = min(max(round(asked.first * plan.rate), 0), n)
+    last = min(max(int(np.ceil(asked.last * plan.rate)), first), n)
+    free = None
+    if asked.free:
+        ratios = {str(name): (f.alpha, f.rate) for name, f in plan.floats.items()}
+        free = floating(plant, trim, V, ratios)
+    after = law.of(keeps) if keeps else None
+    phases = [(0, first, law if holds else None), (first, last, after), (last, n, free or after)]
+    return [phase for phase in phases if phase[1] > phase[0]]
+
+
+def _air(plan: Plan, asked: VirtualManeuver, t: Array, V: float) -> Array | None:
+    """The stated gust, (n, 6); None where there is none."""
+    if plan.gust is None:
+        return None
+    g = plan.gust
+    return CosineGust(np.array(g.peak), g.start, g.length, V, returns=True).value(t)
+
+
+def joined(parts: Sequence[SimulatedFlight]) -> SimulatedFlight:
+    """Flights that begin where the one before ended, as one; the later has the common sample."""
+    if len(parts) == 1:
+        return parts[0]
+
+    def chain(arrays: Sequence[Array]) -> Array:
+        return frozen(np.concatenate([*(a[:-1] for a in arrays[:-1]), arrays[-1]]))
+
+    def merged(values: Sequence[Any]) -> Any:
+        one = values[0]
+        if isinstance(one, np.ndarray):
+            return chain(values)
+        if isinstance(one, Mapping):
+            return {k: chain([v[k] for v in values]) for k in one}
+        return one
+
+    def fields_of(items: Sequence[Any], but: tuple[str, ...]) -> dict[str, Any]:
+        return {
+            f.name: merged([getattr(i, f.name) for i in items])
+            for f in fields(items[0])
+            if f.name not in but
+        }
+
+    motions = [p.motion for p in parts]
+    motion = replace(motions[0], **fields_of(motions, ("maneuver", "window_s")))
+    own = fields_of(parts, ("motion", "messages"))
+    said = tuple(dict.fromkeys(m for p in parts for m in p.messages))
+    return replace(parts[0], motion=motion, messages=said, **own)
 
 
 def times(plan: Plan, asked: VirtualManeuver) -> Array:
     """The log's time stamps, (n,) s from 0."""
     return np.arange(round(asked.maneuver.end * plan.rate) + 1) / plan.rate
-
-
-def channels_of(plan: Plan, loadings: Mapping[str, Loading]) -> tuple[str, ...]:
-    """The channels that every log of the plan holds, in one order."""
-    wanted = set(SENSED) - {"df", "dt", "fuel_used"}
-    if any(c.df_deg for c in plan.conditions):
-        wanted.add("df")
-    if any(
-        getattr(e, "kind", "given") != "given"
-        for x in loadings.values()
-        for e in x.aircraft.engines
-    ):
-        wanted.add("dt")
-    if any(x.fuel_used for x in loadings.values()):
-        wanted.add("fuel_used")
-    wanted -= {name for name, spec in plan.sensors.items() if not spec.use}
-    return tuple(name for name in SENSED if name in wanted)
-
-
-def constants_of(plan: Plan, seed: int) -> dict[str, float]:
-    """The sensors' constant errors, SI, the same in every flight: 'b_alpha' rad, 'k_alpha' 1."""
-    out = {}
-    for name, spec in plan.sensors.items():
-        for key, value, sigma in (
-            ("b", spec.in_si(spec.bias), spec.in_si(spec.bias_sigma)),
-            ("k", spec.scale, spec.scale_sigma),
-        ):
-            if value or sigma:
-                label = f"{key}_{name}"
-                out[label] = value + sigma * float(generator(seed, label).standard_normal())
-    return out
-
-
-def generator(seed: int, label: str) -> np.random.Generator:
-    """Random numbers of their own for each label: none depends on what else is flown, or when."""
-    words = np.frombuffer(hashlib.sha256(label.encode()).digest(), dtype="<u4")
-    return np.random.default_rng(np.random.SeedSequence([seed, *(int(w) for w in words)]))
-
-
-def sense(
-    plan: Plan,
-    flight: SimulatedFlight,
-    loading: Loading,
-    channels: tuple[str, ...],
-    constants: Mapping[str, float],
-    seed: int,
-) -> dict[str, Array]:
-    """What the sensors make of a flight, by channel, SI, each (n,).
-
-    Controls are in the aircraft file's own sense, as a log has them.
-    """
-    motion = flight.motion
-    truth = sensed(flight, loading)
-    out = {}
-    for name in channels:
-        spec = plan.sensors.get(name, SensorPlan())
-        error = SensorError(
-            scale=constants.get(f"k_{name}", 0.0),
-            bias=constants.get(f"b_{name}", 0.0),
-            sigma=spec.in_si(spec.sigma),
-            step=spec.in_si(spec.step),
-            lag=spec.lag,
-            loss=spec.loss,
-            stuck=None if spec.stuck is None else (spec.stuck[0], spec.stuck[1]),
-        )
-        random = generator(seed, f"{motion.maneuver.id}/{name}")
-        own = slice(None) if spec.rate is None else every(motion.t, spec.rate)
-        if spec.lag > 0.0:  # a sensor lags all the time, not only when it is asked
-            lagging = replace(SensorError(), lag=spec.lag)
-            truth[name] = readings(truth[name], lagging, random, motion.t)
-            error = replace(error, lag=0.0)
-        values = np.full(len(motion.t), np.nan)
-        values[own] = readings(truth[name][own], error, random, motion.t[own])
-        sign = loading.aircraft.control_sign(name) if name in motion.controls else 1.0
-        out[name] = sign * values
-    return out
-
-
-def sensed(flight: SimulatedFlight, loading: Loading) -> dict[str, Array]:
-    """What sensors without errors would read where they sit, SI, Alula's senses, (n,) each."""
-    motion, aircraft = flight.motion, loading.aircraft
-    burned = np.full(1, loading.fuel_used) if motion.fuel_used is None else motion.fuel_used
-    cg = aircraft.mass_properties(burned).cg
-    rates = np.stack([motion.p, motion.q, motion.r], axis=1)
-    out = {name: getattr(motion, name) for name in ("p", "q", "r", "phi", "theta", "psi")}
-
-    def arm(channel: str) -> Array:
-        return np.asarray((aircraft.sensor_position(channel) - cg).mean(axis=0))
-
-    force = np.stack([motion.ax, motion.ay, motion.az], axis=1)
-    turning = np.stack([motion.pdot, motion.qdot, motion.rdot], axis=1)
-    for i, name in enumerate(("ax", "ay", "az")):
-        out[name] = specific_force_at(force, rates, turning, arm(name))[:, i]
-    for i, name in enumerate(("V", "alpha", "beta")):
-        out[name] = flow_angles(velocity_at(flight.air_velocity, rates, arm(name)))[i]
-    # R_BE of what was flown, from its own angles: lever arms turn with the aircraft.
-    rotation = _rotation(motion)
-    for i, name in enumerate(("v_north", "v_east", "v_down")):
-        swing = velocity_at(np.zeros_like(rates), rates, arm(name))
-        out[name] = flight.velocity[:, i] + np.einsum("nj,nj->n", rotation[:, :, i], swing)
-    out["h"] = motion.h - rotation[:, :, 2] @ arm("h")
-    out |= {name: motion.controls[name] for name in ("de", "da", "dr", "df", "dt")}
-    out["thrust"] = np.zeros(len(motion.t)) if motion.thrust is None else motion.thrust
-    out["fuel_used"] = np.broadcast_to(burned, motion.t.shape)
-    return {name: np.array(values, dtype=np.float64) for name, values in out.items()}
-
-
-def _rotation(motion: Motion) -> Array:
-    """R_BE (n, 3, 3) from Euler angles 3-2-1."""
-    from alula.core import core
-
-    states = np.zeros((len(motion.t), 13))
-    for row, phi, theta, psi in zip(states, motion.phi, motion.theta, motion.psi, strict=True):
-        core.quaternion_from_euler(phi, theta, psi, row[3:7])
-    return attitudes(states)[1]
-
-
-def logged(name: str) -> tuple[str, float]:
-    """Unit of a channel in the log, and SI per unit: ('deg', 0.01745...) for 'alpha'."""
-    si = expected_unit(name) or "1"
-    unit = _LOGGED.get(si, si)
-    return unit, to_si(unit).scale

@@ -8,13 +8,16 @@ import tempfile
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from alula.aircraft import Aircraft, load_aircraft
+from alula.base.arrays import Array
 from alula.base.messages import BadInput, refuse
+from alula.simulate.airframe import Airframe, airframe_of
 from alula.simulate.virtual_plan import LoadingSpec, Plan
 
 MODEL = "truth_model.toml"  # in the folder of a virtual flight test
@@ -29,6 +32,25 @@ class Loading:
     fuel_used: float
     file: str
     text: str
+
+    @cached_property
+    def cg(self) -> Array:
+        """The center of gravity, (3,) m from the datum."""
+        return np.asarray(self.aircraft.mass_properties(np.array([self.fuel_used])).cg[0])
+
+    @cached_property
+    def airframes(self) -> dict[tuple[str, bool], Airframe]:
+        """Those asked for so far: a hundred maneuvers share one."""
+        return {}
+
+    def airframe(self, engines: Literal["given", "modeled"], actuators: bool) -> Airframe:
+        """What the equations of motion need; see `airframe_of`."""
+        key = (engines, actuators)
+        if key not in self.airframes:
+            self.airframes[key] = airframe_of(
+                self.aircraft, self.fuel_used, engines=engines, actuators=actuators
+            )
+        return self.airframes[key]
 
 
 def loadings_of(plan: Plan) -> dict[str, Loading]:

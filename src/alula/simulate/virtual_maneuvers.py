@@ -173,7 +173,7 @@ def signals_of(asked: ManeuverPlan, V: float) -> tuple[dict[str, Signal], float]
             tuple(gain * i.amplitude_deg for i in sines),
             one.duration * stretch,
             (one.band_hz[0] / stretch, one.band_hz[1] / stretch),
-            one.start,
+            start=one.start,
         )
     of_sines = dict(zip([id(i) for i in sines], several, strict=True))
     parts: dict[str, list[Signal]] = {}

@@ -166,18 +166,18 @@ class FloatSpec(Strict):
 
 
 class GustSpec(Strict):
-    """A one-minus-cosine gust in body axes."""
+    """A one-minus-cosine gust in body axes, there and back."""
 
     peak: Vector = Field(description="m/s, velocity of the air")
     start: NotNegative = Field(description="s")
-    length: Positive = Field(description="m, from its begin to its peak")
+    length: Positive = Field(description="m, from its beginning to its peak")
 
 
 class TurbulenceSpec(Strict):
     """Dryden turbulence by MIL-F-8785C."""
 
-    wind_20ft: NotNegative | None = Field(default=None, description="m/s at 6 m, for low altitude")
-    sigma: NotNegative | None = Field(default=None, description="m/s, for high altitude")
+    wind_20ft: NotNegative = Field(default=0.0, description="m/s 20 ft above ground: below 2000 ft")
+    sigma: NotNegative = Field(default=0.0, description="m/s, above 1000 ft")
 
 
 class Plan(Strict):
@@ -192,6 +192,10 @@ class Plan(Strict):
     rate: Positive = Field(default=50.0, description="Hz, of the logs")
     step: Positive = Field(default=0.01, description="s, longest of the integration")
     duration: Positive = Field(default=20.0, description="s, of a maneuver")
+    engines: Literal["modeled", "given"] = Field(
+        default="modeled", description="those of the aircraft file, or a thrust that stays"
+    )
+    actuators: bool = Field(default=True, description="those of the aircraft file")
     seed: Annotated[int, Field(ge=0)] = 1
     loadings: list[LoadingSpec] = Field(default_factory=list)
     conditions: list[ConditionSpec] = Field(min_length=1)
@@ -203,7 +207,7 @@ class Plan(Strict):
     gust: GustSpec | None = None
     turbulence: TurbulenceSpec | None = None
     pilot: PilotSpec = PilotSpec()
-    floats: dict[Surface, FloatSpec] = Field(default={}, alias="float")
+    floats: dict[Literal["de", "da", "dr"], FloatSpec] = Field(default={}, alias="float")
     identify: dict[str, str] = Field(
         default={}, description="formulas for the project; default the model's, with constants"
     )
@@ -226,6 +230,9 @@ class Plan(Strict):
         for name in self.sensors:
             if name not in SENSED:
                 raise ValueError(f"[sensors] of {', '.join(SENSED)}|'{name}'")
+        for maneuver in self.maneuvers:
+            if maneuver.controls == "free" and not self.floats:
+                raise ValueError(f"[float.de] or another, for free controls|none, {maneuver.id}")
         for key in ("loadings", "conditions", "maneuvers"):
             ids = [x.id for x in getattr(self, key) if x.id is not None]
             twice = sorted({i for i in ids if ids.count(i) > 1})

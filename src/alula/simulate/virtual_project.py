@@ -5,16 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from alula.model import AeroModel
-from alula.simulate.virtual_flight import logged
 from alula.simulate.virtual_loading import Loading, toml_value
 from alula.simulate.virtual_maneuvers import VirtualManeuver
 from alula.simulate.virtual_plan import Plan
+from alula.simulate.virtual_sensing import logged
 
 INERTIAL = ("ax", "ay", "az", "p", "q", "r")
 MEASURED = (
     "V", "alpha", "beta", "phi", "theta", "psi", "h", "v_north", "v_east", "v_down",
 )  # fmt: skip
-PROJECT = "campaign.toml"
 
 
 def project_text(
@@ -63,7 +62,7 @@ def project_text(
             f"configuration = {toml_value(dict(m.configuration))}",
         ]
         lines += ["held_out = true"] if m.held_out else []
-    lines += ["", *_reconstruct(plan, channels), "", *_identify(formulas)]
+    lines += ["", *_reconstruct(plan, channels), "", *_identify(plan, formulas, loadings)]
     return "\n".join(lines) + "\n"
 
 
@@ -111,13 +110,20 @@ def formulas_of(plan: Plan, model: AeroModel) -> dict[str, str]:
     return formulas
 
 
-def _identify(formulas: Mapping[str, str]) -> list[str]:
+def _identify(
+    plan: Plan, formulas: Mapping[str, str], loadings: Mapping[str, Loading]
+) -> list[str]:
+    constant = ["common_constant = true  # one aircraft, whatever its trim"]
+    engines = next(iter(loadings.values())).aircraft.engines
+    if plan.engines == "modeled" and any(e.machine is not None for e in engines):
+        # The shaft's torque changes with the power of each condition, and is in no coefficient.
+        constant = ["common_constant = false  # the engine's torque differs from trim to trim"]
     return [
         "[identify]",
         'method = "ee"',
         "",
         "[identify.options]",
-        "common_constant = true  # one aircraft, whatever its trim",
+        *constant,
         "",
         "[identify.models]",
         *(f"{name} = {toml_value(formula)}" for name, formula in formulas.items()),
