@@ -27,12 +27,12 @@ void fly_many(const Aircraft& self, Matrix starts, Cube controls, Matrix winds, 
               double dt, int substeps, CubeOut states, CubeOut outputs, CubeOut inputs,
               Counts flown, bool hold, const std::optional<Cube>& gusts) {
   const std::size_t k = starts.shape(0), m = starts.shape(1), n = states.shape(1);
-  const bool fits =
-      m == static_cast<std::size_t>(self.model.layout.size) && n > 0 && winds.shape(0) == k &&
-      winds.shape(1) == kWindNumbers && flown.shape(0) == k && is(states, k, n, m) &&
-      is(outputs, k, n, alula::kFlightOutputs) && is(inputs, k, n, alula::kFlightInputs) &&
-      (is(controls, k, n, 6) || is(controls, 1, n, 6)) &&
-      (!gusts || is(*gusts, k, n, 6) || is(*gusts, 1, n, 6));
+  const bool fits = m == static_cast<std::size_t>(self.model.layout.size) && n > 0 &&
+                    winds.shape(0) == k && winds.shape(1) == kWindNumbers && flown.shape(0) == k &&
+                    is(states, k, n, m) && is(outputs, k, n, alula::kFlightOutputs) &&
+                    is(inputs, k, n, alula::kFlightInputs) &&
+                    (is(controls, k, n, 6) || is(controls, 1, n, 6)) &&
+                    (!gusts || is(*gusts, k, n, 6) || is(*gusts, 1, n, 6));
   if (!fits)
     throw nb::value_error(
         "expected starts (k, state_count), controls (k or 1, n, 6), winds (k, 9), states (k, n,\n"

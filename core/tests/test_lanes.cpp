@@ -129,8 +129,8 @@ TYPED_TEST(LaneMathematics, LogarithmKeepsTheStatedError) {
   using T = TypeParam;
   using L = Lanes<T, 4>;
   using Limits = std::numeric_limits<T>;
-  std::vector<T> x = {T(1), T(0.5), T(2), Limits::min(), Limits::max(), T(0.70710678), T(1.41421356),
-                      T(10)};
+  std::vector<T> x = {T(1),          T(0.5),        T(2),          Limits::min(),
+                      Limits::max(), T(0.70710678), T(1.41421356), T(10)};
   std::mt19937 random(7);
   for (const double size : {1e-6, 0.3, 1.0, 30.0, kDouble<T> ? 700.0 : 80.0}) {
     std::uniform_real_distribution<double> draw(-size, size);

@@ -45,7 +45,10 @@ def airframe() -> Airframe:
 
 def starts(k: int) -> Array:
     return np.stack(
-        [initial_state(40.0 + 3.0 * i, 0.05, 0.05, 700.0 + 50.0 * i, beta=0.01 * i) for i in range(k)]
+        [
+            initial_state(40.0 + 3.0 * i, 0.05, 0.05, 700.0 + 50.0 * i, beta=0.01 * i)
+            for i in range(k)
+        ]
     )
 
 
@@ -66,9 +69,7 @@ def same(a: SimulatedFlight, b: SimulatedFlight) -> None:
 # Below, at and above the number of lanes, and no multiple of it.
 @pytest.mark.parametrize("k", [1, 3, 4, 6])
 @pytest.mark.parametrize("hold", [False, True])
-def test_each_is_the_flight_alone(
-    airframe: Airframe, model: AeroModel, k: int, hold: bool
-) -> None:
+def test_each_is_the_flight_alone(airframe: Airframe, model: AeroModel, k: int, hold: bool) -> None:
     x0, de = starts(k), elevators(k)
     wind = np.stack([[3.0 + i, -2.0, 0.1 * i] for i in range(k)])
     gusts = np.zeros((k, len(T), 6))
@@ -85,7 +86,7 @@ def test_each_is_the_flight_alone(
             **options,
         )  # fmt: skip
         same(alone, flight)
-        assert flight.motion.maneuver.name == f"flight_{i}"
+        assert flight.motion.maneuver.id == f"flight_{i}"
     assert k == 1 or np.abs(flights[0].motion.q - flights[1].motion.q).max() > 1e-3
 
 
@@ -132,7 +133,11 @@ def test_turbulence_pilots_and_mixed_profiles(airframe: Airframe, model: AeroMod
     controls = {"dt": 0.6, "de": -0.06}
     air = [Turbulence(W20=5.0, sigma=1.0, seed=i) for i in range(2)]
     pilot = Pilot({("da", "phi"): -0.3}, {"phi": 0.1})
-    winds = [Wind(), Wind(np.array([4.0, 0.0, 0.0]), reference_height=6.0, logarithmic=True), Wind()]
+    winds = [
+        Wind(),
+        Wind(np.array([4.0, 0.0, 0.0]), reference_height=6.0, logarithmic=True),
+        Wind(),
+    ]
     options: dict[str, Any] = {"substeps": 5}
     flights = fly_many(
         airframe, model, x0, T, controls, wind=winds, turbulence=[*air, None], pilot=pilot,
@@ -165,7 +170,7 @@ def test_a_flight_does_not_depend_on_the_others(airframe: Airframe, model: AeroM
             assert 1 <= len(cut[i].motion.t) < len(T)
             assert len(cut[i].plant_states) == len(cut[i].motion.t)
             assert "diverged" in [m.code for m in cut[i].messages]
-            assert f"flight {i}" in [m.where for m in cut[i].messages if m.code == "diverged"][0]
+            assert f"flight {i}" in next(m.where for m in cut[i].messages if m.code == "diverged")
         else:
             assert flights[i].plant_states.tobytes() == cut[i].plant_states.tobytes()
     for i, flight in zip(order, some, strict=True):

@@ -12,6 +12,7 @@ from alula.base.messages import Message, refuse, warn
 from alula.flight import Maneuver
 from alula.model import AeroModel
 from alula.simulate.airframe import GRAVITY, Airframe, core_model, set_wind
+from alula.simulate.flight_check import check_step
 from alula.simulate.fly import (
     SimulatedFlight,
     as_flight,
@@ -21,7 +22,6 @@ from alula.simulate.fly import (
     full_start,
     gust_rows,
 )
-from alula.simulate.flight_check import check_step
 from alula.simulate.pilot import Pilot
 from alula.simulate.wind import Turbulence, Wind, as_wind
 
@@ -124,9 +124,16 @@ def fly_many(
         )
         flights.append(
             as_flight(
-                airframe, model, maneuver, t[:m], plant.further_states, states[i, :m],
-                outputs[i, :m], flown_inputs[i, :m], said,
-            )  # fmt: skip
+                airframe,
+                model,
+                maneuver,
+                t[:m],
+                plant.further_states,
+                states[i, :m],
+                outputs[i, :m],
+                flown_inputs[i, :m],
+                said,
+            )
         )
     return tuple(flights)
 
@@ -140,7 +147,9 @@ def _each_control(controls: Mapping[str, Array | float], k: int, n: int) -> Arra
     }
     for name, values in several.items():
         if values.shape != (k, n):
-            raise _shape("bad_control", f"control {name}", f"({k}, {n}), ({n},) or ()", values.shape)
+            raise _shape(
+                "bad_control", f"control {name}", f"({k}, {n}), ({n},) or ()", values.shape
+            )
     common = {name: values for name, values in controls.items() if name not in several}
     return np.stack(
         [

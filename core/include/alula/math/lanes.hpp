@@ -1,7 +1,7 @@
 #pragma once
-// W numbers side by side in one vector register (or several): sigma points, parameter sets, flights.
-// Sine, cosine, arctangent, exponential and logarithm are branch-free, so every lane takes the same
-// way. A comparison gives a mask, for which `select` chooses lane by lane.
+// W numbers side by side in one vector register (or several): sigma points, parameter sets,
+// flights. Sine, cosine, arctangent, exponential and logarithm are branch-free, so every lane takes
+// the same way. A comparison gives a mask, for which `select` chooses lane by lane.
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -149,11 +149,11 @@ struct Lanes {
   ALULA_LANES_OPERATOR(*)
   ALULA_LANES_OPERATOR(/)
 #undef ALULA_LANES_OPERATOR
-#define ALULA_LANES_COMPARISON(op)                          \
-  friend Mask operator op(const Lanes& a, const Lanes& b) { \
-    Mask r;                                                 \
+#define ALULA_LANES_COMPARISON(op)                            \
+  friend Mask operator op(const Lanes& a, const Lanes& b) {   \
+    Mask r;                                                   \
     for (int i = 0; i < W; ++i) r.m[i] = -(a.v[i] op b.v[i]); \
-    return r;                                               \
+    return r;                                                 \
   }
   ALULA_LANES_COMPARISON(<)
   ALULA_LANES_COMPARISON(>)
@@ -197,7 +197,7 @@ struct Trig<double> {
   static constexpr double half_pi_1 = 1.57079625129699707031;
   static constexpr double half_pi_2 = 7.54978941586159635335e-8;
   static constexpr double half_pi_3 = 5.39030252995776476554e-15;
-  static constexpr int sign_shift = 62;     // from bit 1 to the sign bit
+  static constexpr int sign_shift = 62;      // from bit 1 to the sign bit
   static constexpr int exponent_shift = 52;  // from bit 0 to the exponent
   static constexpr std::int64_t exponent_of_one = 1023;
   static constexpr double largest_exponent = 708.0;  // e to plus or minus this is a normal number
@@ -263,7 +263,8 @@ inline Lanes<T, W> atan2(Lanes<T, W> y, Lanes<T, W> x) {
   const L ay = select(y < zero, -y, y), ax = select(x < zero, -x, x);
   const auto steep = ay > ax;  // the quotient t stays within [0, 1]
   const L large = select(steep, ay, ax), small = select(steep, ax, ay);
-  const auto upper = small > L(T(0.4142135623730950488)) * large;  // tan(pi/8); then (t - 1)/(t + 1)
+  const auto upper =
+      small > L(T(0.4142135623730950488)) * large;  // tan(pi/8); then (t - 1)/(t + 1)
   const L u = select(upper, small - large, small) /
               select(large > zero, select(upper, small + large, large), one);
   const L z = u * u;
@@ -316,8 +317,8 @@ inline Lanes<T, W> exp(Lanes<T, W> x) {
 }
 
 // Natural logarithm of normal numbers above zero: error below 2e-16 and 3e-16 of the value (float:
-// 1e-7 both); NaN for all others. Rational approximation on [sqrt(1/2), sqrt(2)] by the coefficients
-// of the Cephes library.
+// 1e-7 both); NaN for all others. Rational approximation on [sqrt(1/2), sqrt(2)] by the
+// coefficients of the Cephes library.
 template <class T, int W>
 inline Lanes<T, W> log(Lanes<T, W> x) {
   using L = Lanes<T, W>;
@@ -355,8 +356,8 @@ inline Lanes<T, W> log(Lanes<T, W> x) {
 #endif
 }
 
-// The same choices for plain numbers, where a comparison gives a bool: one text serves both. What is
-// skipped by `any` and `all` must be what `select` would not have taken.
+// The same choices for plain numbers, where a comparison gives a bool: one text serves both. What
+// is skipped by `any` and `all` must be what `select` would not have taken.
 template <class S>
 constexpr S select(bool m, const S& a, const S& b) {
   return m ? a : b;

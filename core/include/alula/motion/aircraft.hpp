@@ -71,7 +71,8 @@ S alpha_rate(const FlightState<S>& x, const Wind<A>& wind, const Place<S>& at, c
 // Rates of all states, from the loads.
 template <class S, class T, class A>
 void state_rate(const FlightState<S>& x, const FlightInput<S>& u, const AircraftModel<T>& a,
-                const Wind<A>& wind, const Place<S>& at, const Loads<S>& load, FlightState<S>& rate) {
+                const Wind<A>& wind, const Place<S>& at, const Loads<S>& load,
+                FlightState<S>& rate) {
   const StateLayout& layout = a.layout;
   rate.length = layout.size;
   if (!a.burns) {

@@ -62,12 +62,9 @@ Air<S> standard_atmosphere(const S& h) {
   // Layer by layer, all of them only for what flies that high.
   struct {
     S base, temperature, lapse, inverse, power, decay, pressure;
-  } at{S(kLayer[0].base),
-       S(kLayer[0].temperature),
-       S(kLayer[0].lapse),
-       S(1.0 / kLayer[0].temperature),
-       S(kLayer[0].power()),
-       S(kLayer[0].decay()),
+  } at{S(kLayer[0].base),    S(kLayer[0].temperature),
+       S(kLayer[0].lapse),   S(1.0 / kLayer[0].temperature),
+       S(kLayer[0].power()), S(kLayer[0].decay()),
        S(kLayer[0].pressure)};
   for (int i = 1; i < kLayers; ++i) {
     const Layer& next = kLayer[i];

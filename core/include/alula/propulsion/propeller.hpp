@@ -32,7 +32,8 @@ constexpr S times_speed_squared(const Curve<T>& c, const S& n, const S& V_over_D
     const auto& low = c.piece[0];
     const auto& high = c.piece[static_cast<unsigned>(c.count - 1)];
     const auto before = (advance < c.first() * speed) & (advance < c.last() * speed);
-    const S at_zero = select(before, S(low[0] - low[1] * c.first()), S(high[0] - high[1] * c.last()));
+    const S at_zero =
+        select(before, S(low[0] - low[1] * c.first()), S(high[0] - high[1] * c.last()));
     outside = n * (n * at_zero + select(before, S(low[1]), S(high[1])) * V_over_D);
   }
   if (!any(between)) return outside;
