@@ -73,7 +73,7 @@ def fly_many(
     inputs = _each_control(controls, k, n)
     winds = _each_wind(wind, k)
     each_gusts = None if gusts is None else _each_gust(gusts, k, n)
-    names = _each("maneuvers", maneuvers, k)
+    names: list[Maneuver | None] = _each("maneuvers", maneuvers, k)
     stirred = _each("turbulence", turbulence, k)
     piloted = _each("pilot", pilot, k)
 
@@ -165,7 +165,7 @@ def _each_wind(wind: Array | Wind | Sequence[Array | Wind] | None, k: int) -> li
         one = np.ndim(wind) == 1  # type: ignore[arg-type]
     winds = [as_wind(wind)] * k if one else [as_wind(w) for w in wind]  # type: ignore
     if len(winds) != k or any(np.shape(w.steady) != (3,) for w in winds):
-        raise _shape("bad_wind", "wind", f"one wind or {k}, each (3,) or a Wind", np.shape(winds))
+        raise _shape("bad_wind", "wind", f"one wind or {k}, each (3,) or a Wind", (len(winds),))
     return winds
 
 
