@@ -131,6 +131,13 @@ def test_control_that_stands_still_is_named():
     assert not found.identifiable
 
 
+def test_held_out_maneuver_is_left_aside_and_said():
+    held = replace(flown(8), id="b", held_out=True)
+    found = identify_filter_error(roll(), [flown(1), held])
+    assert "held_out" in [m.code for m in found.messages]
+    assert found["Lp"].value == identify_filter_error(roll(), [flown(1)])["Lp"].value
+
+
 def test_unknown_state_is_refused():
     with pytest.raises(BadInput, match="unknown_option"):
         identify_filter_error(roll(), [flown(6)], noisy=["q"])
