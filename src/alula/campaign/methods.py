@@ -13,18 +13,19 @@ from alula.base.messages import BadInput, Message, note, refuse
 from alula.campaign.options import Kind, checked_options, factors, priors_of
 from alula.identify import CoefficientData, Identification, Reference, identify_equation_error
 from alula.identify.bootstrap import BLOCK_OPTIONS, bootstrapped
+from alula.identify.carried import Shifts, carried
 from alula.identify.flight_filter_error import STATES_OF, identify_flight_filter_error
 from alula.identify.frequency_regression import identify_frequency_regression
 from alula.identify.measured_maneuver import MeasuredManeuver
 from alula.identify.merge import merged
 from alula.identify.output_error import identify_output_error
-from alula.identify.output_error_problem import STATE_SETS
+from alula.identify.output_error_problem import STATE_SETS, Setting
 from alula.identify.quality import se_words
 from alula.identify.regression_choice import OPTIONS as REGRESSION
 from alula.identify.regression_choice import regression_choice
 from alula.identify.task import LONGITUDINAL
 
-Measured = tuple[tuple[MeasuredManeuver, ...], tuple[Message, ...]]
+Measured = tuple[tuple[MeasuredManeuver, ...], tuple[Message, ...], list[Shifts]]
 
 
 @dataclass(frozen=True)
@@ -163,24 +164,32 @@ def _by_outputs(
         if options["substeps"] not in range(1, 101):
             raise _bad("substeps", "a whole number from 1 to 100", repr(options["substeps"]))
         options["substeps"] = int(options["substeps"])
-    maneuvers, messages = task.measure()
+    maneuvers, messages, shifts = task.measure()
     results = []
     parts = _parts(task.models) if states == "auto" else [(_set_of(states), dict(task.models))]
     for name, models in parts:
         serving = _serving(maneuvers, models)
         flown = tuple(sets[name] if isinstance(states, str) else states)
         outputs = _outputs(name, flown, asked, serving, split=states == "auto")
+        own = _of_part(options, models, outputs, alone=len(parts) == 1)
         found = identify(
             serving,
             models,
             states=flown,
             outputs=outputs,
-            **_of_part(options, models, outputs, alone=len(parts) == 1),
+            **own,
             truth=task.truth,
         )
+        if identify is identify_output_error:
+            setting = Setting(flown, tuple(outputs), **{k: own[k] for k in _SETTING & own.keys()})
+            rest = {k: own[k] for k in ("noise", "priors", "scales") if k in own}
+            found = carried(found, serving, models, shifts, setting, **rest)
         results.append(replace(found, formulas=found.formulas or models))
     result = merged(results)
     return replace(result, messages=(*messages, *result.messages))
+
+
+_SETTING = {"fixed", "tied", "initial", "biases", "common_constant", "stabilize", "substeps"}
 
 
 def _parts(models: Mapping[str, str]) -> list[tuple[str, dict[str, str]]]:
