@@ -66,7 +66,7 @@ TRUE = {
 FORMULAS = {"CZ": "1 + alpha", "Cm": "1 + alpha + qhat + de"}
 
 
-def short_period(seed, n=250):
+def short_period(seed, n=200):
     """Alpha and q of a light airplane in turbulence, by Euler's rule at 20 steps a sample and
     equations written out here: 60 m/s, S 16 m2, c 1.5 m, 1100 kg, Iyy 1800 kg m2.
     """

@@ -36,6 +36,7 @@ class Method(StrEnum):
 
     ee = "ee"
     oe = "oe"
+    fe = "fe"
     fd = "fd"
 
 

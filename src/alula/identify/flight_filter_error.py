@@ -101,8 +101,8 @@ def flight_functions(
         out.update({n: x[..., i] for i, n in enumerate(states)})
         return out
 
-    def aero(s: Mapping[str, Array], u: Array, p: Array) -> tuple[Array, Array]:
-        """Specific force (..., 3) and angular acceleration (..., 3)."""
+    def aero(s: Mapping[str, Array], u: Array, p: Array) -> tuple[list[Array], list[Array]]:
+        """Specific force and angular acceleration, three components each."""
         half = 0.5 / s["V"]
         known = {n: u[..., at[n]] for n in m.controls}
         known |= {
@@ -114,7 +114,8 @@ def flight_functions(
         for j, (c, term, _) in enumerate(terms):
             if c != LIFT and LIFT in C:
                 known[LIFT] = C[LIFT]
-            C[c] = C.get(c, np.zeros(1)) + p[..., j] * term.values(known)
+            share = p[..., j] * term.values(known)
+            C[c] = C[c] + share if c in C else share
         for c in m.coefficients:
             if c not in C:
                 C[c] = u[..., at[f"measured {c}"]]
@@ -124,17 +125,19 @@ def flight_functions(
             C["CZ"] = -C["CD"] * sin - C["CL"] * cos
         qS = 0.5 * u[..., at["rho"]] * s["V"] ** 2 * ref.S
         arms = (ref.b, ref.c, ref.b)
-        X, Y, Z, L, M, N = np.broadcast_arrays(
-            *(qS * C[c] for c in _BODY[:3]),
-            *(qS * length * C[c] for c, length in zip(_BODY[3:], arms, strict=True)),
-        )
-        F = np.stack([X, Y, Z], axis=-1)
-        engines = at["force"]
-        moment = np.stack([L, M, N], axis=-1) + np.cross(m.arm, F)
-        moment = moment + u[..., engines + 3 : engines + 6]
-        w = np.stack(np.broadcast_arrays(s["p"], s["q"], s["r"]), axis=-1)
-        turn = (moment - np.cross(w, w @ m.inertia.T)) @ inverse.T
-        return (F + u[..., engines : engines + 3]) / m.mass, turn
+        X, Y, Z = (qS * C[c] for c in _BODY[:3])
+        L, M, N = (qS * length * C[c] for c, length in zip(_BODY[3:], arms, strict=True))
+        thrust = [u[..., at["force"] + i] for i in range(6)]
+        w = [s["p"], s["q"], s["r"]]
+        spin = [sum(m.inertia[i, j] * w[j] for j in range(3)) for i in range(3)]
+        moment = [
+            part + own + lever - gyroscopic
+            for part, own, lever, gyroscopic in zip(
+                (L, M, N), thrust[3:], _cross(list(m.arm), (X, Y, Z)), _cross(w, spin), strict=True
+            )
+        ]
+        turn = [sum(inverse[i, j] * moment[j] for j in range(3)) for i in range(3)]
+        return [(f + pull) / m.mass for f, pull in zip((X, Y, Z), thrust[:3], strict=True)], turn
 
     def derivative(x: Array, u: Array, p: Array) -> Array:
         s = motion(x, u)
@@ -148,15 +151,15 @@ def flight_functions(
         ct, st = np.cos(s["theta"]), np.sin(s["theta"])
         cf, sf = np.cos(s["phi"]), np.sin(s["phi"])
         U, v, w = s["V"] * ca * cb, s["V"] * sb, s["V"] * sa * cb
-        du = a[..., 0] - m.gravity * st + s["r"] * v - s["q"] * w
-        dv = a[..., 1] + m.gravity * ct * sf + s["p"] * w - s["r"] * U
-        dw = a[..., 2] + m.gravity * ct * cf + s["q"] * U - s["p"] * v
+        du = a[0] - m.gravity * st + s["r"] * v - s["q"] * w
+        dv = a[1] + m.gravity * ct * sf + s["p"] * w - s["r"] * U
+        dw = a[2] + m.gravity * ct * cf + s["q"] * U - s["p"] * v
         dV = (U * du + v * dv + w * dw) / s["V"]
         rate = {
             "V": dV,
             "alpha": (U * dw - w * du) / (U**2 + w**2),
             "beta": (dv - sb * dV) / np.hypot(U, w),
-            "p": turn[..., 0], "q": turn[..., 1], "r": turn[..., 2],
+            "p": turn[0], "q": turn[1], "r": turn[2],
             "phi": s["p"] + st / ct * (s["q"] * sf + s["r"] * cf),
             "theta": s["q"] * cf - s["r"] * sf,
         }  # fmt: skip
@@ -167,8 +170,8 @@ def flight_functions(
         have: dict[str, Array] = dict(s)
         if any(y not in STATES for y in outputs):
             a, turn = aero(s, u, p)
-            have |= {n: a[..., i] for i, n in enumerate(("ax", "ay", "az"))}
-            have |= {n: turn[..., i] for i, n in enumerate(("pdot", "qdot", "rdot"))}
+            have |= {n: a[i] for i, n in enumerate(("ax", "ay", "az"))}
+            have |= {n: turn[i] for i, n in enumerate(("pdot", "qdot", "rdot"))}
         lead = np.broadcast_shapes(x.shape[:-1], u.shape[:-1], p.shape[:-1])
         return np.stack([np.broadcast_to(have[y], lead) for y in outputs], axis=-1)
 
@@ -182,6 +185,15 @@ def flight_functions(
         belongs={n: c for c, _, n in terms},
         rows=dict.fromkeys(outputs, "equations of motion"),
     )
+
+
+def _cross(a: Sequence[Array], b: Sequence[Array]) -> list[Array]:
+    """Cross product of components; NumPy's own costs more than all the rest at these sizes."""
+    return [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
 
 
 def _lift_first(models: Mapping[str, str]) -> list[str]:
