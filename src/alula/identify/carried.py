@@ -16,7 +16,7 @@ import numpy as np
 from alula.base.arrays import Array, frozen
 from alula.identify.likelihood import Prior
 from alula.identify.measured_maneuver import MeasuredManeuver
-from alula.identify.output_error import OutputErrorLikelihood
+from alula.identify.output_error_likelihood import OutputErrorLikelihood
 from alula.identify.output_error_problem import FlightProblem, Setting
 from alula.identify.result import Identification
 from alula.identify.verdict import verdict
