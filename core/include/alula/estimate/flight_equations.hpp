@@ -73,27 +73,45 @@ inline void flight_equations(const MotionState<L, M>& x, const std::array<D, kCo
   const D fz = out.az + m.gravity * (ct * cf);
   const D ahead = fx * ca + fz * sa;  // along the airspeed's projection on the plane of symmetry
 
-  // Moment about the center of gravity, less w x (J w).
-  const auto hx = m.inertia.row[0].x * x.p + m.inertia.row[0].y * x.q + m.inertia.row[0].z * x.r;
-  const auto hy = m.inertia.row[1].x * x.p + m.inertia.row[1].y * x.q + m.inertia.row[1].z * x.r;
-  const auto hz = m.inertia.row[2].x * x.p + m.inertia.row[2].y * x.q + m.inertia.row[2].z * x.r;
-  const L pressure_span = m.b * pressure_area;
+  // Moment about the center of gravity, less w x (J w). A motion in the plane of symmetry, whose
+  // lateral variables are plain zeros, leaves most of it out.
+  bool turning = true, sideways = true;
+  if constexpr (axes == Axes::longitudinal) {
+    turning = x.p != 0.0 || x.r != 0.0;
+    sideways = x.beta != 0.0;
+  }
   D Mx, My, Mz;
   if constexpr (lateral) {
-    Mx =
-        pressure_span * C[3] + (m.arm.y * Fz - m.arm.z * Fy) + u[kInMoment] - (x.q * hz - x.r * hy);
-    Mz = pressure_span * C[5] + (m.arm.x * Fy - m.arm.y * Fx) + u[kInMoment + 2] -
-         (x.p * hy - x.q * hx);
+    const L pressure_span = m.b * pressure_area;
+    Mx = pressure_span * C[3] + u[kInMoment];
+    Mz = pressure_span * C[5] + u[kInMoment + 2];
   }
-  if constexpr (longitudinal)
-    My = (m.c * pressure_area) * C[4] + (m.arm.z * Fx - m.arm.x * Fz) + u[kInMoment + 1] -
-         (x.r * hx - x.p * hz);
+  if constexpr (longitudinal) My = (m.c * pressure_area) * C[4] + u[kInMoment + 1];
+  if (m.arm.x != 0.0 || m.arm.y != 0.0 || m.arm.z != 0.0) {
+    if constexpr (lateral) {
+      Mx += m.arm.y * Fz - m.arm.z * Fy;
+      Mz += m.arm.x * Fy - m.arm.y * Fx;
+    }
+    if constexpr (longitudinal) My += m.arm.z * Fx - m.arm.x * Fz;
+  }
+  if (turning) {
+    const auto hx = m.inertia.row[0].x * x.p + m.inertia.row[0].y * x.q + m.inertia.row[0].z * x.r;
+    const auto hy = m.inertia.row[1].x * x.p + m.inertia.row[1].y * x.q + m.inertia.row[1].z * x.r;
+    const auto hz = m.inertia.row[2].x * x.p + m.inertia.row[2].y * x.q + m.inertia.row[2].z * x.r;
+    if constexpr (lateral) {
+      Mx -= D(x.q * hz - x.r * hy);
+      Mz -= D(x.p * hy - x.q * hx);
+    }
+    if constexpr (longitudinal) My -= D(x.r * hx - x.p * hz);
+  }
 
   if constexpr (longitudinal) {
-    const L per_V = 1.0 / x.V;
-    out.rate[kMotionV] = ahead * cb + fy * sb;
-    out.rate[kMotionAlpha] =
-        (fz * ca - fx * sa) * (per_V / cb) + x.q - (sb / cb) * (x.p * ca + x.r * sa);
+    out.rate[kMotionV] = ahead * cb;
+    out.rate[kMotionAlpha] = (fz * ca - fx * sa) / (x.V * cb) + x.q;
+    if (sideways) {
+      out.rate[kMotionV] += fy * sb;
+      out.rate[kMotionAlpha] -= D((sb / cb) * (x.p * ca + x.r * sa));
+    }
     out.rate[kMotionTheta] = D(0.0) + x.q * cf - x.r * sf;
   }
   if constexpr (lateral) {

@@ -47,7 +47,7 @@ void take_up(const VariationalPlan<axes>& plan, int sample, const Sensitive<axes
     const int which = m.output[o];
     const bool wanted = z[o] == z[o];
     if (!wanted && !sums.predicted && !sums.sensitivity) continue;
-    alignas(32) SensitivityRow own_row;
+    alignas(32) SensitivityRows<1> own_row;
     const double* J = own_row;
     double y = 0.0;
     if (which < kMotionVariables) {
@@ -56,9 +56,9 @@ void take_up(const VariationalPlan<axes>& plan, int sample, const Sensitive<axes
         if (K::state[i] == which && plan.is_state[i]) own = i;
       y = own < 0 ? u[kInMotion + which] : at.x[own];
       if (own >= 0 && m.bias_column[o] < 0)
-        J = at.S[own];
+        J = at.S + own * stride;
       else
-        for (int j = 0; j < stride; ++j) own_row[j] = own < 0 ? 0.0 : at.S[own][j];
+        for (int j = 0; j < stride; ++j) own_row[j] = own < 0 ? 0.0 : at.S[own * stride + j];
     } else {
       const D& d = which == kOutAx     ? here.y.ax
                    : which == kOutAy   ? here.y.ay
@@ -106,12 +106,14 @@ int fly_maneuver(const MeasuredManeuver& m, const double* values, const double* 
   Sensitive<axes> now, sum, trial, k;
   for (int i = 0; i < K::kStates; ++i) {
     now.x[i] = initial[K::state[i]];
-    for (int j = 0; j < plan.stride; ++j) now.S[i][j] = 0.0;
+    double* row = now.S + i * plan.stride;
+    for (int j = 0; j < plan.stride; ++j) row[j] = 0.0;
     const int column = m.initial_column[K::state[i]];
-    if (plan.is_state[i] && column >= 0) now.S[i][column] = 1.0;
+    if (plan.is_state[i] && column >= 0) row[column] = 1.0;
   }
   Instant<axes> here;
-  double u[3][kManeuverInputs], z[3][kMeasuredOutputs];
+  double between[3][kManeuverInputs], z[3][kMeasuredOutputs];
+  const double* const u[3] = {between[0], between[1], between[2]};
   for (int sample = 0; sample < m.samples; ++sample) {
     if (!detail::flies(plan, now.x)) return sample;
     const double* u0 = m.inputs + static_cast<long>(sample) * kManeuverInputs;
@@ -126,7 +128,7 @@ int fly_maneuver(const MeasuredManeuver& m, const double* values, const double* 
     for (int part = 0; part < m.substeps; ++part) {
       for (int at = 0; at < 3; ++at) {  // beginning, middle and end of the step
         const double w = (part + 0.5 * at) / m.substeps;
-        for (int i = 0; i < kManeuverInputs; ++i) u[at][i] = u0[i] + w * (u1[i] - u0[i]);
+        for (int i = 0; i < kManeuverInputs; ++i) between[at][i] = u0[i] + w * (u1[i] - u0[i]);
         for (int o = 0; o < m.outputs; ++o) z[at][o] = z0[o] + w * (z1[o] - z0[o]);
       }
       if (part > 0) evaluate(plan, now.x, u[0], here);

@@ -31,15 +31,17 @@ struct Kernel<Axes::six> {
   static constexpr int coefficient[6] = {0, 1, 2, 3, 4, 5};
 };
 
-// Rows of sensitivities: a number for each parameter, filled up with zeros to whole registers.
-using SensitivityRow = double[kMaxParameters];
+// Sensitivities: rows of a number for each parameter, filled up with zeros to whole registers, one
+// behind the other (stride: the plan's).
+template <int Rows>
+using SensitivityRows = double[Rows * kMaxParameters];
 static_assert(kMaxParameters % 4 == 0);
 
 // The motion at one instant and its derivatives by the parameters.
 template <Axes axes>
 struct Sensitive {
   double x[Kernel<axes>::kStates];
-  alignas(32) SensitivityRow S[Kernel<axes>::kStates];
+  alignas(32) SensitivityRows<Kernel<axes>::kStates> S;
 };
 
 // What a run needs beside the maneuver, found once: which slots feed which coefficient and which
@@ -108,7 +110,7 @@ template <Axes axes>
 struct Instant {
   using D = Dual<double, Kernel<axes>::kDirections>;
   MotionRates<D> y;
-  alignas(32) SensitivityRow by_parameter[Kernel<axes>::kForces] = {};  // at fixed state
+  alignas(32) SensitivityRows<Kernel<axes>::kForces> by_parameter = {};  // at fixed state
 };
 
 namespace detail {
@@ -202,20 +204,23 @@ inline void evaluate(const VariationalPlan<axes>& plan, const double* x, const d
   D slots[kMaxSlots];
   detail::base_slots<axes, D>(plan, s, u, slots);
   constexpr int lift = force_of<axes>(kLift);
+  bool has_lift = false;
+  std::array<D, kCoefficients> C;
   fill_slots(*m.table, slots, m.lookups, [&](const D* filled) {
     if constexpr (lift < 0) return D(u[kInCoefficients + kLift]);
-    return detail::seeded_force(plan, lift < 0 ? 0 : lift, filled, u);
+    if (!has_lift) C[kLift] = detail::seeded_force(plan, lift < 0 ? 0 : lift, filled, u);
+    has_lift = true;
+    return C[kLift];
   });
-  std::array<D, kCoefficients> C;
   for (int c = 0; c < kCoefficients; ++c)
     if (force_of<axes>(c) < 0) C[static_cast<unsigned>(c)] = D(u[kInCoefficients + c]);
-  for (int c = 0; c < K::kForces; ++c) {
-    C[static_cast<unsigned>(K::coefficient[c])] = detail::seeded_force(plan, c, slots, u);
-  }
+  for (int c = 0; c < K::kForces; ++c)
+    if (!(has_lift && c == lift))
+      C[static_cast<unsigned>(K::coefficient[c])] = detail::seeded_force(plan, c, slots, u);
   flight_equations<axes, D>(s, C, u, m, out.y);
 
   for (int c = 0; c < K::kForces; ++c) {
-    double* row = out.by_parameter[c];
+    double* row = out.by_parameter + c * plan.stride;
     for (int k = 0; k < plan.count[c]; ++k) {
       const auto& term = plan.terms[c][k];
       if (term.column < 0) continue;
@@ -228,31 +233,33 @@ inline void evaluate(const VariationalPlan<axes>& plan, const double* x, const d
 // A quantity's derivatives by the parameters: through the states and through the coefficients.
 template <Axes axes>
 inline void total_slope(const VariationalPlan<axes>& plan, const typename Instant<axes>::D& y,
-                        const SensitivityRow* S, const Instant<axes>& at, double* out) {
+                        const double* S, const Instant<axes>& at, double* out) {
   using K = Kernel<axes>;
   using V = Lanes<double, kLanes>;
   double slope[K::kDirections];
   detail::slopes_of(y, slope);
-  for (int j = 0; j < plan.stride; j += kLanes) {
-    V sum = V(slope[0]) * V::load(S[0] + j);
-    for (int i = 1; i < K::kStates; ++i) sum += V(slope[i]) * V::load(S[i] + j);
-    for (int c = 0; c < K::kForces; ++c)
-      sum += V(slope[K::kStates + c]) * V::load(at.by_parameter[c] + j);
-    sum.store(out + j);
+  const int stride = plan.stride;
+  for (int j = 0; j < stride; j += kLanes) {
+    V through_states = V(slope[0]) * V::load(S + j);
+    for (int i = 1; i < K::kStates; ++i)
+      through_states += V(slope[i]) * V::load(S + i * stride + j);
+    V through_forces = V(slope[K::kStates]) * V::load(at.by_parameter + j);
+    for (int c = 1; c < K::kForces; ++c)
+      through_forces += V(slope[K::kStates + c]) * V::load(at.by_parameter + c * stride + j);
+    (through_states + through_forces).store(out + j);
   }
 }
 
-// y = x + f k over the used columns.
+// y = x + f k.
 template <Axes axes>
 inline void along(const VariationalPlan<axes>& plan, const Sensitive<axes>& x, double f,
                   const Sensitive<axes>& k, Sensitive<axes>& y) {
   using V = Lanes<double, kLanes>;
   const V factor(f);
-  for (int i = 0; i < Kernel<axes>::kStates; ++i) {
-    y.x[i] = x.x[i] + f * k.x[i];
-    for (int j = 0; j < plan.stride; j += kLanes)
-      (V::load(x.S[i] + j) + factor * V::load(k.S[i] + j)).store(y.S[i] + j);
-  }
+  for (int i = 0; i < Kernel<axes>::kStates; ++i) y.x[i] = x.x[i] + f * k.x[i];
+  const int all = Kernel<axes>::kStates * plan.stride;
+  for (int j = 0; j < all; j += kLanes)
+    (V::load(x.S + j) + factor * V::load(k.S + j)).store(y.S + j);
 }
 
 // Rates of the states and of their sensitivities. z: measured outputs there, for the pull.
@@ -261,18 +268,20 @@ inline void rates_of(const VariationalPlan<axes>& plan, const Sensitive<axes>& a
                      const Instant<axes>& here, const double* z, Sensitive<axes>& k) {
   using K = Kernel<axes>;
   for (int i = 0; i < K::kStates; ++i) {
+    double* row = k.S + i * plan.stride;
     if (!plan.is_state[i]) {
       k.x[i] = 0.0;
-      for (int j = 0; j < plan.stride; ++j) k.S[i][j] = 0.0;
+      for (int j = 0; j < plan.stride; ++j) row[j] = 0.0;
       continue;
     }
     const auto& rate = here.y.rate[K::state[i]];
     k.x[i] = rate.value;
-    total_slope(plan, rate, at.S, here, k.S[i]);
+    total_slope(plan, rate, at.S, here, row);
     const double gain = plan.pull[i];
     if (gain > 0.0 && z[plan.pull_output[i]] == z[plan.pull_output[i]]) {
       k.x[i] += gain * (z[plan.pull_output[i]] - at.x[i]);
-      for (int j = 0; j < plan.stride; ++j) k.S[i][j] -= gain * at.S[i][j];
+      const double* own = at.S + i * plan.stride;
+      for (int j = 0; j < plan.stride; ++j) row[j] -= gain * own[j];
     }
   }
 }
