@@ -9,18 +9,29 @@ added.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from alula.base.arrays import Array
 from alula.base.messages import Message, refuse
 from alula.identify.coefficients import CoefficientData
+from alula.identify.diagnostics import diagnose
 from alula.identify.quality import joint_covariance, predictions, quality, r_squared, status
 from alula.identify.regression import Weighting, regress
+from alula.identify.regression_choice import Kind, RegressionChoice
 from alula.identify.result import Fit, Identification, Parameter, Series
 from alula.identify.task import LONGITUDINAL, MOMENTS, CoefficientTask, serving, uneven
 from alula.identify.verdict import assess
 from alula.model import reference_scales
+
+METHODS: Mapping[Kind, str] = {
+    "ordinary": "equation error",
+    "ridge": "equation error, ridge regression (biased)",
+    "pcr": "equation error, principal-components regression (biased)",
+    "stepwise": "equation error, stepwise regression",
+    "orthogonal": "equation error, orthogonal functions",
+}
 
 __all__ = ["LONGITUDINAL", "MOMENTS", "identify_equation_error", "r_squared"]
 
@@ -33,6 +44,7 @@ def identify_equation_error(
     common_constant: bool = False,
     scales: Mapping[str, float] | None = None,
     truth: Mapping[str, float] | None = None,
+    regression: RegressionChoice | Kind = "ordinary",
 ) -> Identification:
     """Derivatives of every coefficient in `models`, shared by all maneuvers that serve it.
 
@@ -40,6 +52,7 @@ def identify_equation_error(
     {"Cm": "1 + alpha + qhat + de"}. weighting: of maneuvers, see regression.py. common_constant:
     one constant term for all maneuvers instead of one each. scales: standard errors that are good
     enough, by parameter name. truth: true values where they are known, carried along.
+    regression: how each coefficient is regressed and, where the data choose, on which terms.
 
     Only maneuvers of the coefficient's aspect are used. A held-out maneuver is predicted with
     the derivatives of the others; its constant term, which belongs to its trim, is taken from
@@ -62,6 +75,7 @@ def identify_equation_error(
             found=repr(weighting),
             do="Weight maneuvers by their residual variance, or all the same.",
         )
+    choice = RegressionChoice(regression) if isinstance(regression, str) else regression
     fits: dict[str, Fit] = {}
     parameters: list[Parameter] = []
     series: list[Series] = []
@@ -71,8 +85,14 @@ def identify_equation_error(
     for coefficient, formula in models.items():
         maneuvers = serving(data, coefficient)
         learn = [item for item in maneuvers if not item.maneuver.held_out]
+        formula, structure, said = choice.select(
+            coefficient, formula, learn, common_constant, weighting
+        )
+        messages += said
         task = CoefficientTask(coefficient, formula, tuple(learn), common_constant)
-        fit = regress(task.names, task.blocks(None), weighting)
+        fit, said = choice.fit(
+            coefficient, regress(task.names, task.blocks(None), weighting), task.free
+        )
         change = {
             source: fit.refit(task.blocks(source)) - fit.solution.value
             for source in dict.fromkeys(p.source for item in learn for p in item.perturbed)
@@ -86,9 +106,13 @@ def identify_equation_error(
         changes.append(change)
         shown = predictions(task, fit, maneuvers)
         series += shown
-        fits[coefficient] = quality(task, fit, shown)
+        tests, warned = diagnose(task, fit)
+        messages += [*said, *warned]
+        fits[coefficient] = replace(
+            quality(task, fit, shown), diagnostics=tests, structure=structure
+        )
     return Identification(
-        method="equation error",
+        method=METHODS[choice.regression],
         parameters=tuple(parameters),
         fits=fits,
         series=tuple(series),

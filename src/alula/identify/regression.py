@@ -154,5 +154,19 @@ def _weights(residuals: Sequence[Array], count: int) -> tuple[float, ...]:
     return tuple(float(1.0 / r) for r in ratio)
 
 
+def residual_weights(regressors: Sequence[Array], measured: Sequence[Array]) -> tuple[float, ...]:
+    """The maneuvers' weights by the residuals of an unweighted fit, (n, k) and (n,) each.
+
+    All the same where the model leaves no residual to judge by.
+    """
+    x, z = np.vstack(regressors), np.concatenate(measured)
+    rank = int(np.linalg.matrix_rank(x / np.maximum(np.linalg.norm(x, axis=0), 1e-300)))
+    if len(regressors) < 2 or len(z) <= 2 * rank:
+        return (1.0,) * len(regressors)
+    left = z - x @ np.linalg.lstsq(x, z, rcond=None)[0]
+    ends = np.cumsum([len(m) for m in measured])[:-1]
+    return _weights(np.split(left, ends), rank)
+
+
 def _stack(parts: Sequence[Array], weights: Sequence[float]) -> Array:
     return np.concatenate([np.sqrt(w) * x for w, x in zip(weights, parts, strict=True)])

@@ -15,6 +15,9 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
 
+    from alula.identify.diagnostics import Diagnostics
+    from alula.identify.structure import Structure
+
 Verdict = Literal["ok", "weak", "not_identifiable"]
 
 
@@ -52,7 +55,11 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Fit:
-    """How one coefficient's model fits, over all its maneuvers."""
+    """How one coefficient's model fits, over all its maneuvers.
+
+    diagnostics: whether the model is enough and what the residuals say. structure: how its terms
+    were chosen. None where the method does not tell.
+    """
 
     coefficient: str
     formula: str
@@ -62,6 +69,8 @@ class Fit:
     n_held_out: int
     r2_held_out: float
     durbin_watson: float
+    diagnostics: Diagnostics | None = None
+    structure: Structure | None = None
 
 
 @dataclass(frozen=True)
@@ -74,6 +83,23 @@ class Series:
     measured: Array
     model: Array
     held_out: bool
+
+
+@dataclass(frozen=True)
+class History:
+    """Estimates over time, of a recursive method, over one maneuver.
+
+    names: (k,) of the parameters. t: (n,) s. value: (n, k). se: (n, k) standard errors as the
+    method has them in flight, NaN before there are enough samples. factor: (n,) forgetting used.
+    """
+
+    coefficient: str
+    maneuver: str
+    names: tuple[str, ...]
+    t: Array
+    value: Array
+    se: Array
+    factor: Array
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from alula.base.messages import Message, refuse, warn
 from alula.identify.coefficients import CoefficientData
 from alula.identify.regression import Block
 from alula.identify.typical import constant_name
-from alula.model import LIFT, regressors
+from alula.model import LIFT, parse, regressors
 
 LONGITUDINAL = frozenset({"CX", "CZ", "CD", "CL", "Cm"})
 MOMENTS = frozenset({"Cl", "Cm", "Cn"})
@@ -22,7 +22,8 @@ class CoefficientTask:
     """Parameter names and regressor blocks of one coefficient's formula.
 
     names: (k,) of the parameters, the maneuvers' own constants first where they have their own.
-    free: those names that are constant terms. terms: the formula's own names.
+    free: those names that are constant terms. terms: the formula's own names. formula_terms: what
+    they are made of.
     """
 
     def __init__(
@@ -33,6 +34,7 @@ class CoefficientTask:
         common: bool,
     ) -> None:
         self.coefficient, self.formula, self.learn = coefficient, formula, learn
+        self.formula_terms = parse(formula)
         terms, _ = regressors(coefficient, formula, variables_of(learn[0]))
         self.terms = tuple(terms)
         self.constant = constant_name(coefficient)

@@ -24,6 +24,7 @@ def summary(result: Identification) -> str:
     lines += ["-" * _WIDTH, _header(result), "-" * _WIDTH]
     lines += [_row(p) for p in result.parameters]
     lines += ["=" * _WIDTH, result.status]
+    lines += [f"{name}: {f.diagnostics.words}" for name, f in result.fits.items() if f.diagnostics]
     unseen = [name for name, fit in result.fits.items() if not fit.n_held_out]
     if unseen:
         lines.append(
@@ -34,19 +35,27 @@ def summary(result: Identification) -> str:
         "were white;\nthe interval takes Student's t with the degrees of freedom of coloured "
         "residuals."
     )
+    if any(p.bias is not None for p in result.parameters):
+        lines.append("biased estimates: the interval includes the estimated bias, se does not.")
     return "\n".join(lines)
 
 
 def _header(result: Identification) -> str:
     truth = any(p.truth is not None for p in result.parameters)
+    biased = any(p.bias is not None for p in result.parameters)
     return (
         f"{'parameter':<18}{'value':>12}{'se':>11}{'se white':>11}{'[0.025':>12}{'0.975]':>12}"
-        f"{'unit':>9}{'VIF':>8}" + (f"{'truth':>11}" if truth else "") + "  verdict"
+        f"{'unit':>9}{'VIF':>8}"
+        + (f"{'truth':>11}" if truth else "")
+        + (f"{'bias':>10}" if biased else "")
+        + "  verdict"
     )
 
 
 def _row(p: Parameter) -> str:
     truth = "" if p.truth is None else f"{p.truth:>11.5g}"
+    if p.bias is not None:
+        truth += f"{p.bias:>10.2g}"
     unit = "" if p.unit == "1" else p.unit
     if p.verdict == "not_identifiable":
         gap = f"{'-':>12}{'-':>11}{'-':>11}{'-':>12}{'-':>12}"
