@@ -9,8 +9,8 @@
 // Plain forgetting divides all of P by a, and P grows without end in every direction that is not
 // excited: in quiet flight the estimate ends in noise. Forgetting along the regressor only (Cao and
 // Schwartz, Automatica 36, 2000) takes the old information out of just the direction in which new
-// comes in; the others keep theirs, and nothing has to be tuned. Besides, no parameter's variance is
-// forgotten beyond its bound.
+// comes in; the others keep theirs, and nothing has to be tuned. Besides, no parameter's variance
+// is forgotten beyond its bound.
 #include <algorithm>
 #include <alula/math/bounded.hpp>
 #include <cmath>
