@@ -1,0 +1,44 @@
+"""Recursive least squares: time a sample with 8 parameters, histories and standard errors included.
+
+One thread, one Python call over a recording; the best of several rounds counts. That nothing is
+allocated is tested in core/tests/test_recursive.cpp.
+"""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+
+from alula.core import ISA
+from alula.identify.recursive import Forgetting, recursive_least_squares
+
+PARAMETERS, MUST = 8, 1e-6  # s a sample
+KINDS = {
+    "no forgetting": Forgetting(),
+    "forgetting along the regressor": Forgetting(0.999),
+    "plain forgetting": Forgetting(0.999, directional=False),
+    "adaptive, window of 50": Forgetting(0.999, window=50),
+}
+
+
+def measure(quick: bool = False) -> dict[str, float]:
+    """Seconds a sample by kind of forgetting."""
+    samples, rounds = (20_000, 3) if quick else (100_000, 7)
+    rng = np.random.default_rng(1)
+    x = rng.standard_normal((samples, PARAMETERS))
+    z = x @ np.arange(PARAMETERS) + rng.standard_normal(samples)
+    best = dict.fromkeys(KINDS, np.inf)
+    for _ in range(rounds):
+        for name, forgetting in KINDS.items():
+            begin = time.perf_counter()
+            recursive_least_squares(x, z, forgetting)
+            best[name] = min(best[name], (time.perf_counter() - begin) / samples)
+    return best
+
+
+def check(quick: bool = False) -> tuple[str, bool]:
+    """Times in words, and whether the slowest holds."""
+    found = measure(quick)
+    words = ", ".join(f"{name} {1e6 * s:.2f}" for name, s in found.items())
+    return f"µs a sample ({ISA}): {words}", max(found.values()) < MUST
