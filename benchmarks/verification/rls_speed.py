@@ -24,7 +24,7 @@ KINDS = {
 
 def measure(quick: bool = False) -> dict[str, float]:
     """Seconds a sample by kind of forgetting."""
-    samples, rounds = (20_000, 3) if quick else (100_000, 7)
+    samples, rounds = 20_000, 5 if quick else 30
     rng = np.random.default_rng(1)
     x = rng.standard_normal((samples, PARAMETERS))
     z = x @ np.arange(PARAMETERS) + rng.standard_normal(samples)

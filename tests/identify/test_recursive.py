@@ -40,7 +40,7 @@ def test_without_forgetting_every_step_is_the_batch_solution_so_far():
 
 def test_plain_forgetting_is_exponentially_weighted_least_squares():
     x, z = problem()
-    got = recursive_least_squares(x, z, Forgetting(0.97, directional=False))
+    got = recursive_least_squares(x, z, Forgetting(0.97, directional=False), gains=True)
     w = 0.97 ** np.arange(len(z) - 1.0, -1.0, -1.0)
     batch = np.linalg.solve((x * w[:, None]).T @ x, (x * w[:, None]).T @ z)
     assert got.value[-1] == pytest.approx(batch, rel=1e-6)
@@ -53,7 +53,7 @@ def test_plain_forgetting_is_exponentially_weighted_least_squares():
 def test_the_last_value_is_the_weighted_samples(forgetting):
     x, z = problem(seed=3)
     first = np.array([5.0, -3.0, 2.0])
-    got = recursive_least_squares(x, z, forgetting, initial=first, variance=[1.0, 1.0, 1.0])
+    got = recursive_least_squares(x, z, forgetting, initial=first, variance=[1.0] * 3, gains=True)
     weights, rest = sample_weights(x, got.gain)
     assert weights @ z + rest @ first == pytest.approx(got.value[-1], rel=1e-9)
 

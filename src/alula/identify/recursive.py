@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from alula.base.arrays import Array, frozen
+from alula.base.arrays import Array
 from alula.base.messages import refuse
 from alula.core import core
 
@@ -73,7 +73,8 @@ class RecursiveFit:
     value: (n, k) after each sample. se: (n, k), sqrt(s^2 P), as it is known in flight: of white
     residuals, NaN before there are enough. innovation: (n,) measured minus predicted. spread: (n,)
     its variance over the noise's. factor: (n,) forgetting used. reset: (n,) whether the variances
-    started anew. noise: (n,) variance s^2. gain: (n, k).
+    started anew. noise: (n,) variance s^2. gain: (n, k), or
+    (0, k) where it was not asked for.
     """
 
     value: Array
@@ -102,13 +103,15 @@ def recursive_least_squares(
     variance: Array | None = None,
     bound: Array | None = None,
     reset: Array | None = None,
+    gains: bool = False,
 ) -> RecursiveFit:
     """Measured (n,) on regressors (n, k), sample by sample.
 
     initial: (k,) values at the start, zero by default. variance: (k,) of them, in units of the
     noise's variance; by default so large that they count as a 1e-8th of a typical sample. bound:
     (k,) variances that forgetting does not exceed, by default those of the start. reset: (n,) flags
-    where the variances start anew. A sample with a NaN is passed over. Raises BadInput where shapes
+    where the variances start anew. gains: whether to keep them, for `sample_weights`. A sample with
+    a NaN is passed over. Raises BadInput where shapes
     do not fit or a variance is not positive.
     """
     x = np.ascontiguousarray(regressors, dtype=float)
@@ -140,22 +143,27 @@ def recursive_least_squares(
             found=f"{first.shape}, {start.shape}, {most.shape}, {flags.shape}",
             do="Give one of each per parameter.",
         )
-    value, se, gain, steps = (np.empty((n, m)) for m in (k, k, k, 5))
+    value, se, steps = (np.empty((n, m)) for m in (k, k, 5))
+    gain = np.empty((n if gains else 0, k))
     f = forgetting
     core.recursive_least_squares(
         x, z, first, start, most, flags, f.factor, f.directional, f.window, f.least, f.variance,
         f.reset_ratio, value, se, gain, steps,
     )  # fmt: skip
-    innovation, spread, factor, was_reset, noise = (frozen(c) for c in steps.T)
-    return RecursiveFit(
-        frozen(value), frozen(se), innovation, spread, factor, was_reset, noise, frozen(gain)
-    )
+    for filled in (value, se, gain, steps):
+        filled.setflags(write=False)  # in place: a copy takes as long as the fit
+    innovation, spread, factor, was_reset, noise = steps.T
+    return RecursiveFit(value, se, innovation, spread, factor, was_reset, noise, gain)
 
 
 def diffuse(regressors: Array) -> Array:
     """(k,) variances of a start that counts as a 1e-8th of a typical sample of each regressor."""
-    finite = regressors[np.isfinite(regressors).all(axis=1)]
-    size = np.mean(finite**2, axis=0) if len(finite) else np.ones(regressors.shape[1])
+    used = regressors
+    size = np.einsum("nk,nk->k", used, used)
+    if not np.isfinite(size).all():
+        used = regressors[np.isfinite(regressors).all(axis=1)]
+        size = np.einsum("nk,nk->k", used, used)
+    size = size / max(len(used), 1)
     out: Array = DIFFUSE / np.where(size > 0.0, size, 1.0)
     return out
 

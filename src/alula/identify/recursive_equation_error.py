@@ -105,7 +105,8 @@ def identify_recursive(
 
 def _run(blocks: Sequence[Block], forgetting: Forgetting) -> RecursiveFit:
     x = np.vstack([b.regressors for b in blocks])
-    return recursive_least_squares(x, np.concatenate([b.measured for b in blocks]), forgetting)
+    measured = np.concatenate([b.measured for b in blocks])
+    return recursive_least_squares(x, measured, forgetting, gains=True)
 
 
 def _last(names: Sequence[str], blocks: Sequence[Block], run: RecursiveFit) -> Regression:
