@@ -17,7 +17,14 @@ from alula.base.arrays import Array
 from alula.base.messages import Message, refuse
 from alula.identify.coefficients import CoefficientData
 from alula.identify.diagnostics import diagnose
-from alula.identify.quality import joint_covariance, predictions, quality, r_squared, status
+from alula.identify.quality import (
+    joint_covariance,
+    predictions,
+    quality,
+    r_squared,
+    se_words,
+    status,
+)
 from alula.identify.regression import Weighting, regress
 from alula.identify.regression_choice import Kind, RegressionChoice
 from alula.identify.result import Fit, Identification, Parameter, Series
@@ -120,4 +127,5 @@ def identify_equation_error(
         status=status(parameters),
         messages=tuple(messages),
         labels={k: v for item in data for k, v in (item.labels or {}).items() if k in models},
+        uncertainty=se_words("coloured residuals", data),
     )

@@ -9,12 +9,13 @@ estimates still exist, with standard errors that tell; this says where it comes 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from alula.base.arrays import Array
 from alula.base.messages import Message, warn
+from alula.identify.result import Parameter
 
 CONTROLS = ("de", "da", "dr", "df", "dt")
 STATES = ("alpha", "beta", "phat", "qhat", "rhat")
@@ -80,6 +81,19 @@ def warn_of_feedback(coefficient: str, found: Sequence[Feedback]) -> tuple[Messa
         for item in found
         if item.r2 > FOLLOWS
     )
+
+
+def distrusted(parameter: Parameter, found: Sequence[Feedback]) -> Parameter:
+    """The parameter, 'weak' at best where its variable is part of a loop that explains a control.
+
+    For states that are pulled to their measurements: whose noise breaks the collinearity, so that
+    standard errors are small and estimates are off (by five of them in a simulated closed loop).
+    """
+    parts = set(parameter.name.removeprefix(f"{parameter.coefficient}_").split("_"))
+    rates = {"p": "phat", "q": "qhat", "r": "rhat"}
+    names = {rates.get(part, part) for part in parts}
+    inside = any(names & {item.control, *item.gains} for item in found if item.r2 > FOLLOWS)
+    return replace(parameter, verdict="weak") if inside and parameter.verdict == "ok" else parameter
 
 
 def _centered(variables: Mapping[str, Array], names: Sequence[str]) -> Array:

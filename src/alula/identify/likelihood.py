@@ -23,6 +23,7 @@ from alula.identify.least_squares import least_squares
 from alula.identify.optimizer import Minimum
 from alula.identify.regression import Block, Regression
 from alula.identify.result import Fit, Identification, Parameter, Series
+from alula.identify.sandwich import sandwich
 from alula.identify.verdict import assess
 
 
@@ -58,8 +59,13 @@ class Prior:
     se: float
 
 
-def regression_at(names: Sequence[str], value: Array, blocks: Sequence[Whitened]) -> Regression:
-    """The likelihood at `value` (k,) as a linear regression."""
+def regression_at(
+    names: Sequence[str], value: Array, blocks: Sequence[Whitened], ordinates: bool = False
+) -> Regression:
+    """The likelihood at `value` (k,) as a linear regression.
+
+    ordinates: rows are real and imaginary parts of a transform's ordinates in turn, not samples.
+    """
     parts = [Block(b.sensitivity, b.residual + b.sensitivity @ value, _silent(b)) for b in blocks]
     solution = least_squares(
         np.vstack([b.regressors for b in parts]), np.concatenate([b.measured for b in parts])
@@ -68,10 +74,12 @@ def regression_at(names: Sequence[str], value: Array, blocks: Sequence[Whitened]
     null = solution.null @ (solution.null.T @ (value * solution.scale))
     solution = replace(solution, value=value - null / solution.scale)
     residuals = tuple(b.residual for b in blocks)
-    coloured = coloured_covariance(
-        [(b.sensitivity, np.ones(1) if b.prior else b.residual) for b in blocks],
-        solution.dispersion,
-    )
+    rows = [(b.sensitivity, np.ones(1) if b.prior else b.residual) for b in blocks]
+    if ordinates:
+        rows = [(x, v) if len(v) > 1 else (np.vstack([x, 0.0 * x]), np.ones(2)) for x, v in rows]
+        coloured = sandwich(rows, solution.dispersion)
+    else:
+        coloured = coloured_covariance(rows, solution.dispersion)
     coloured = replace(
         coloured,
         covariance=_at_least(coloured.covariance, solution.dispersion),
@@ -99,14 +107,15 @@ def assembled(
     scales: Mapping[str, float] | None = None,
     truth: Mapping[str, float] | None = None,
     messages: Sequence[Message] = (),
+    ordinates: bool = False,
 ) -> Identification:
     """The result of a search. belongs: by bare parameter name, the row it stands in.
 
     Where the search failed no parameter has a value: a point that is no maximum has no error bars.
     """
-    if not np.isfinite(found.information).all() or not found.information.any():
+    if not blocks or not np.isfinite(found.information).all() or not found.information.any():
         return _failed(method, names, belongs, found, messages)
-    fit = regression_at(names, found.value, blocks)
+    fit = regression_at(names, found.value, blocks, ordinates)
     none = np.zeros((len(names), len(names)))
     parameters, remarks = assess(
         method, fit, none, scales or {}, truth or {}, units=dict.fromkeys(names, "")

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -96,6 +97,20 @@ def _check(record: LinearRecord) -> None:
         )
 
 
+class Named(Protocol):
+    """What `Unknowns` asks of a model: the names of its states and parameters."""
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        """Names of the states."""
+        ...
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """Names of the parameters."""
+        ...
+
+
 class Unknowns:
     """Every number of a problem by name, and which are free.
 
@@ -105,7 +120,7 @@ class Unknowns:
 
     def __init__(
         self,
-        model: LinearModel,
+        model: Named,
         records: Sequence[LinearRecord],
         own: Collection[str],
         fixed: Mapping[str, float],

@@ -63,6 +63,14 @@ def identified_model(
                 rows[label] = row
         if kept:
             formulas[coefficient] = " + ".join(kept)
+    if not rows:
+        raise refuse(
+            "not_identifiable",
+            where=f"model '{name}'",
+            expected="at least one parameter with a value",
+            found=result.status,
+            do="Without an estimate there is no model to write.",
+        )
     transform = np.vstack(list(rows.values()))
     used = np.flatnonzero(np.any(transform != 0.0, axis=0))
     transform = transform[:, used]

@@ -18,12 +18,13 @@ import numpy as np
 
 from alula.base.arrays import Array
 from alula.base.messages import Message, note, refuse
+from alula.identify.feedback import Feedback, distrusted, feedback, warn_of_feedback
 from alula.identify.likelihood import Fitted, Prior, Whitened, assembled
 from alula.identify.linear_output_error import prior_blocks
 from alula.identify.measured_maneuver import MeasuredManeuver
 from alula.identify.optimizer import Algorithm, Minimum, Point, minimize, with_prior
 from alula.identify.output_error_problem import STATE_SETS, FlightProblem, Setting, Sums
-from alula.identify.output_error_start import start_values
+from alula.identify.output_error_start import regressor_variables, start_values
 from alula.identify.result import Identification
 from alula.identify.typical import unit
 from alula.model import AeroModel, Reference, aero_model, parse, reference_scales
@@ -217,9 +218,13 @@ def identify_output_error(
         learn, model, setting, noise=noise, bounds=bounds, priors=priors, algorithm=algorithm
     )
     problem, found = fit.problem, fit.found
+    said = [*fit.messages, *_pulled(setting)]
+    followed: dict[str, tuple[Feedback, ...]] = {}
     enough = {k: v for c, f in models.items() for k, v in reference_scales(c, f).items()}
     fitted, blocks = _at(fit, priors or {})
     if found.converged:
+        followed = _followed(fit, models)
+        said += [m for c, laws in followed.items() for m in warn_of_feedback(c, laws)]
         for m in maneuvers:
             if m.maneuver.held_out:
                 fitted += _predicted(m, fit, model, setting)
@@ -233,9 +238,11 @@ def identify_output_error(
         {},
         scales={**enough, **(scales or {})},
         truth=truth,
-        messages=(*fit.messages, *_pulled(setting)),
+        messages=said,
     )
     parameters = tuple(replace(p, unit=_unit(p.coefficient, p.name)) for p in result.parameters)
+    if setting.stabilize:
+        parameters = tuple(distrusted(p, followed.get(p.coefficient, ())) for p in parameters)
     return replace(result, parameters=parameters, formulas=dict(models))
 
 
@@ -259,9 +266,7 @@ def _search(
     return minimize(joint, start, algorithm=algorithm, lower=low, upper=high)
 
 
-def _at(
-    fit: OutputErrorFit, priors: Mapping[str, Prior]
-) -> tuple[list[Fitted], list[Whitened]]:
+def _at(fit: OutputErrorFit, priors: Mapping[str, Prior]) -> tuple[list[Fitted], list[Whitened]]:
     """Outputs, and whitened residuals with their slopes, where the search ended."""
     problem, theta = fit.problem, fit.found.value
     if not fit.found.converged:
@@ -306,6 +311,20 @@ def _model(
     reference = Reference(m.reference.S, m.reference.b, m.reference.c)
     chosen = {n: v for n, v in values.items() if n in names}
     return aero_model("output error", models, chosen, reference, axes=axes)
+
+
+def _followed(fit: OutputErrorFit, models: Mapping[str, str]) -> dict[str, tuple[Feedback, ...]]:
+    """Controls that follow the states, in the motion as the model flew it: without noise."""
+    variables = []
+    for i, m in enumerate(fit.problem.maneuvers):
+        y, _ = fit.problem.flight(fit.found.value, i)
+        flown = dict(zip(fit.problem.setting.outputs, y.T, strict=True))
+        variables.append(regressor_variables(replace(m, outputs=flown)))
+    out = {}
+    for coefficient, formula in models.items():
+        names = {v for term in parse(formula) for f in term.factors for v in f.variables}
+        out[coefficient] = feedback(variables, sorted(names))
+    return out
 
 
 def _pulled(setting: Setting) -> tuple[Message, ...]:

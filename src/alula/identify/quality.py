@@ -109,3 +109,9 @@ def status(parameters: Sequence[Parameter]) -> str:
             "more or longer maneuvers would narrow them."
         )
     return "identified: every parameter is resolved"
+
+
+def se_words(residuals: str, data: Sequence[CoefficientData]) -> str:
+    """What a standard error is made of. residuals: how it takes these."""
+    sources = dict.fromkeys(way.source.split()[0] for item in data for way in item.perturbed)
+    return " + ".join([residuals, *sources])

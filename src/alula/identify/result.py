@@ -109,7 +109,7 @@ class Identification:
     A parameter that is not identifiable has NaN for value and errors, and NaN in `covariance`.
     labels: what a coefficient includes beyond aerodynamics ('including thrust'). fits: by
     coefficient, or by output where outputs are compared; formulas: by coefficient, where fits are
-    not.
+    not. uncertainty: what the parameters' `se` is, in words.
     """
 
     method: str
@@ -122,6 +122,7 @@ class Identification:
     histories: tuple[History, ...] = ()  # of recursive methods
     labels: Mapping[str, str] = field(default_factory=dict)
     formulas: Mapping[str, str] = field(default_factory=dict)
+    uncertainty: str = "coloured residuals"
 
     def __getitem__(self, name: str) -> Parameter:
         """The parameter `name`; raises KeyError."""

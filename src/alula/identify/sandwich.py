@@ -2,8 +2,8 @@
 
 Eicker 1963, White 1980: D [ sum x_i x_i' v_i^2 ] D. In frequency this is the correction for
 coloured residuals: a coloured residual's ordinates are independent, with variances that follow
-its spectrum. `corrected` divides squares by 1 - leverage (MacKinnon and White 1985, HC2): a row that
-the fit bends toward shows too small a residual.
+its spectrum. `corrected` divides squares by 1 - leverage (MacKinnon and White 1985, HC2): a row
+that the fit bends toward shows too small a residual.
 """
 
 from __future__ import annotations
