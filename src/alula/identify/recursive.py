@@ -14,7 +14,9 @@ a whole recording.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -64,6 +66,34 @@ class Forgetting:
 
 
 NOTHING_FORGOTTEN = Forgetting()
+# By which names a project's options give the fields of `Forgetting`.
+OPTIONS: Mapping[str, str] = {
+    "forgetting": "factor",
+    "forgetting_directional": "directional",
+    "adaptive_window": "window",
+    "least_forgetting": "least",
+    "residual_variance": "variance",
+    "reset_ratio": "reset_ratio",
+}
+
+
+def forgetting_of(options: Mapping[str, Any]) -> Forgetting:
+    """The forgetting of a project's [identify.options], of which it takes `OPTIONS`.
+
+    Raises BadInput for a window that is not a whole number and for what is out of range.
+    """
+    given = {OPTIONS[name]: value for name, value in options.items() if name in OPTIONS}
+    if "window" in given:
+        if given["window"] != int(given["window"]):
+            raise refuse(
+                "bad_option",
+                where="identify.options.adaptive_window",
+                expected="a whole number of samples",
+                found=repr(given["window"]),
+                do="Correct it.",
+            )
+        given["window"] = int(given["window"])
+    return Forgetting(**given)
 
 
 @dataclass(frozen=True)
