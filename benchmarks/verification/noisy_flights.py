@@ -124,6 +124,10 @@ def measured(
     m, r = flight.motion, aircraft.model.reference
     n = len(m.t)
     added = {} if seed is None else noise(outputs, n, seed, memory)
+    recorded = dict(m.recorded)  # in stability axes; without a formula they are asked for in body
+    sine, cosine = np.sin(m.alpha), np.cos(m.alpha)
+    recorded["CX"] = recorded["CL"] * sine - recorded["CD"] * cosine
+    recorded["CZ"] = -recorded["CL"] * cosine - recorded["CD"] * sine
     motion = {name: np.array(getattr(m, name)) for name in OUTPUTS[:8]}
     return MeasuredManeuver(
         maneuver=m.maneuver,
@@ -139,5 +143,5 @@ def measured(
         force=np.array(flight.engine_force),
         moment=np.array(flight.engine_moment),
         arm=np.asarray(aircraft.model.reference_point) - aircraft.cg,
-        coefficients=dict(m.recorded),
+        coefficients=recorded,
     )

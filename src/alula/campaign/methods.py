@@ -152,7 +152,10 @@ def _output_error(task: IdentifyTask) -> Identification:
                 if k in options}  # fmt: skip
     if "bounds" in options:
         options["bounds"] = {k: tuple(v) for k, v in options["bounds"].items()}
+    _one_of("initial", options.get("initial", "estimate"), ("estimate", "measured"))
     if "substeps" in options:
+        if options["substeps"] not in range(1, 101):
+            raise _bad("substeps", "a whole number from 1 to 100", repr(options["substeps"]))
         options["substeps"] = int(options["substeps"])
     maneuvers, messages = task.measure()
     results = []

@@ -18,6 +18,7 @@ import numpy as np
 
 from alula.base.arrays import Array
 from alula.base.messages import Message, note, refuse
+from alula.identify.control_sign import signs_checked
 from alula.identify.feedback import Feedback, distrusted, feedback, warn_of_feedback
 from alula.identify.likelihood import Fitted, Prior, Whitened, assembled
 from alula.identify.linear_output_error import prior_blocks
@@ -26,12 +27,15 @@ from alula.identify.optimizer import Algorithm, Minimum, Point, minimize, with_p
 from alula.identify.output_error_problem import STATE_SETS, FlightProblem, Setting, Sums
 from alula.identify.output_error_start import regressor_variables, start_values
 from alula.identify.result import Identification
+from alula.identify.saturation import without_saturated
 from alula.identify.typical import unit
 from alula.model import AeroModel, Reference, aero_model, parse, reference_scales
 
 SMALLEST = 1e-24  # of an output's variance over its mean square: below it is rounding
 PULL = 2.0  # 1/s, of a first search where the start values diverge
 StateSet = Literal["longitudinal", "lateral", "six"]
+# Standard errors (m/s; rad, rad/s) at which an initial state is resolved, whatever its value.
+ENOUGH = {"V": 0.5}
 _UNITS = {"V": "m/s", "ax": "m/s2", "ay": "m/s2", "az": "m/s2", "p": "rad/s", "q": "rad/s"}
 _UNITS |= {"r": "rad/s", "pdot": "rad/s2", "qdot": "rad/s2", "rdot": "rad/s2"}
 
@@ -192,6 +196,8 @@ def identify_output_error(
             found="none",
             do='State one, e.g. Cm = "1 + alpha + qhat + de".',
         )
+    whole = [without_saturated(m) for m in maneuvers]
+    maneuvers = [m for m, _ in whole]
     learn = [m for m in maneuvers if not m.maneuver.held_out]
     if not learn or len({m.maneuver.id for m in maneuvers}) < len(maneuvers):
         raise refuse(
@@ -218,9 +224,10 @@ def identify_output_error(
         learn, model, setting, noise=noise, bounds=bounds, priors=priors, algorithm=algorithm
     )
     problem, found = fit.problem, fit.found
-    said = [*fit.messages, *_pulled(setting)]
+    said = [*(m for _, messages in whole for m in messages), *fit.messages, *_pulled(setting)]
     followed: dict[str, tuple[Feedback, ...]] = {}
     enough = {k: v for c, f in models.items() for k, v in reference_scales(c, f).items()}
+    enough |= {n: ENOUGH.get(n.split("(")[0], 0.01) for n in problem.names if "(0)" in n}
     fitted, blocks = _at(fit, priors or {})
     if found.converged:
         followed = _followed(fit, models)
@@ -243,7 +250,14 @@ def identify_output_error(
     parameters = tuple(replace(p, unit=_unit(p.coefficient, p.name)) for p in result.parameters)
     if setting.stabilize:
         parameters = tuple(distrusted(p, followed.get(p.coefficient, ())) for p in parameters)
-    return replace(result, parameters=parameters, formulas=dict(models))
+    parameters, turned = signs_checked(parameters)
+    return replace(
+        result,
+        parameters=parameters,
+        formulas=dict(models),
+        messages=(*result.messages, *turned),
+        status=result.status + "".join(f"; sign contradicted: {m.where}" for m in turned),
+    )
 
 
 def _search(
