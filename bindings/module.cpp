@@ -9,5 +9,6 @@ NB_MODULE(ALULA_MODULE, m) {
   bind_atmosphere(m);
   bind_aircraft(m);
   bind_simulate(m);
+  bind_recursive(m);
   bind_output_error(m);
 }

@@ -237,6 +237,31 @@ def velocity_at(v: Annotated[NDArray[numpy.float64], dict(shape=(None, None), or
 def readings(truth: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], normal: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], scale: float, bias: float, sigma: float, step: float, out: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]) -> None:
     """What a sensor with these errors reads."""
 
+MAX_RECURSIVE: int = 32
+
+MAX_RESIDUAL_WINDOW: int = 512
+
+MAX_FREQUENCIES: int = 64
+
+MAX_FOURIER_CHANNELS: int = 16
+
+def recursive_least_squares(x: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], z: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], initial: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], variance: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], bound: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], reset: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], factor: float, directional: bool, window: int, least: float, usual: float, reset_ratio: float, value: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], se: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], gain: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], steps: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None:
+    """
+    Recursive least squares of z (n,) on x (n, k) with forgetting. initial, variance, bound
+    (k,): values and variances (of unit noise) at the start, and those that forgetting does
+    not exceed. reset (n,): not zero where the variances start anew; or empty. Writes the
+    histories value and se (n, k), gain (n, k) where it is not empty, and steps (n, 5):
+    innovation, its variance over the noise's, forgetting factor used, whether the variances
+    were reset, noise variance.
+    """
+
+def recursive_fourier(x: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], omega: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], dt: float, forgetting: float, every: int, value: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], se: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None:
+    """
+    Sequential least squares in the frequency domain: the last column of x (n, c) on the
+    others, at angular frequencies omega (m,), ascending, by recursive Fourier transforms.
+    Writes value and se (n/every, c - 1), NaN where they are not determined yet.
+    """
+
 class ManeuverFit:
     """
     One maneuver and the model whose values are asked for. reference: S, b, c. body: mass

@@ -26,6 +26,7 @@ METHOD_PAGES = {
     "ukf": "unscented_filter.md",
     "ml": "maximum_likelihood.md",
     "ee": "equation_error.md",
+    "rls": "recursive.md",
 }
 
 

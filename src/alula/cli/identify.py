@@ -37,6 +37,7 @@ class Method(StrEnum):
     ee = "ee"
     oe = "oe"
     fd = "fd"
+    rls = "rls"
 
 
 def identify(
@@ -121,6 +122,7 @@ def result_of(job: Job) -> dict[str, Any]:
                 "tied_to": [{"name": t.name, "weight": t.weight} for t in p.tied_to],
                 "unit": p.unit,
                 "vif": p.vif,
+                **({} if p.bias is None else {"bias": p.bias}),
                 **({} if p.truth is None else {"truth": p.truth}),
             }
             for p in found.parameters
@@ -138,6 +140,7 @@ def result_of(job: Job) -> dict[str, Any]:
                 "n": f.n,
                 "n_held_out": f.n_held_out,
                 "r2_held_out": f.r2_held_out,
+                **({} if f.diagnostics is None else {"diagnostics": f.diagnostics.words}),
             }
             for name, f in found.fits.items()
         },
