@@ -11,6 +11,9 @@ from alula.reconstruct import reconstruct
 from alula.reconstruct.problem import make_problem
 
 
+FILTERS = ["ekf", "iekf", "ukf", "srukf"]
+
+
 def problem_of(recipe, **more):
     flight, truth = made.record(recipe)
     maneuver = Maneuver("m", "made", "", 0.0, recipe.duration)
@@ -35,7 +38,7 @@ def run_core(problem, method, smooth, sigma=None):
     return out, P
 
 
-@pytest.mark.parametrize("method", ["ekf", "ukf"])
+@pytest.mark.parametrize("method", FILTERS)
 def test_smoother_is_never_less_certain_than_the_filter(method):
     problem, _ = problem_of(made.Recipe(duration=15.0))
     _, filtered = run_core(problem, method, smooth=False)
@@ -51,7 +54,7 @@ def test_smoother_is_never_less_certain_than_the_filter(method):
     )
 
 
-@pytest.mark.parametrize("method", ["ekf", "ukf"])
+@pytest.mark.parametrize("method", FILTERS)
 @pytest.mark.parametrize("factor", [1e-6, 1e6])
 def test_covariance_stays_positive_for_absurd_noise_levels(method, factor):
     # Perfect readings: noise a million times the stated one would only move the state about.

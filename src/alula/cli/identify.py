@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from alula.base.filters import FilterName
 from alula.cli.contract import (
     Command,
     JsonOption,
@@ -22,15 +23,6 @@ if TYPE_CHECKING:
     from alula.campaign import Job
 
 
-class Filter(StrEnum):
-    """How the flight path is reconstructed."""
-
-    ekf = "ekf"
-    ukf = "ukf"
-    ml = "ml"
-    none = "none"
-
-
 class Method(StrEnum):
     """How the model is identified."""
 
@@ -40,7 +32,7 @@ class Method(StrEnum):
 def identify(
     project: Annotated[Path, typer.Argument(metavar="PROJECT", help="The project file.")],
     method: Annotated[Method | None, typer.Option(help="Instead of the project's.")] = None,
-    filter: Annotated[Filter | None, typer.Option(help="Instead of the project's.")] = None,
+    filter: Annotated[FilterName | None, typer.Option(help="Instead of the project's.")] = None,
     maneuver: Annotated[
         list[str] | None,
         typer.Option(metavar="ID", help="Only this maneuver; may be given several times."),
@@ -75,7 +67,7 @@ def identify(
 
         job = run_project(
             str(project),
-            filter=None if filter is None else filter.value,
+            filter=filter,
             method=None if method is None else method.value,
             only=maneuver or (),
             truth=None if truth is None else _truth(truth),

@@ -16,7 +16,6 @@ from alula.cli.contract import (
     ThreadsOption,
     writable,
 )
-from alula.cli.identify import Filter
 
 if TYPE_CHECKING:
     from alula.campaign import ValidationJob
@@ -46,7 +45,7 @@ def validate(
     report: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write the HTML report there.")
     ] = None,
-    filter: Annotated[Filter | None, typer.Option(help="Instead of the project's.")] = None,
+    filter: Annotated[FilterName | None, typer.Option(help="Instead of the project's.")] = None,
     trim: Annotated[
         Trim,
         typer.Option(help="Offsets of the coefficients from before the input, or the whole."),
@@ -76,7 +75,7 @@ def validate(
             str(project),
             model=model,
             only=maneuver or (),
-            filter=None if filter is None else filter.value,
+            filter=filter,
             trim=trim.value,
             horizon=horizon,
             draws=draws,

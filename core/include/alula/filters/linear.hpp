@@ -4,6 +4,7 @@
 //   z(k)   = C x(k) + nu(k),                      nu ~ N(0, R)
 // Source: Dittrich 2016, Eq. (3.15) to (3.21), the covariance in Joseph's form; Rauch, Tung,
 // Striebel 1965. Sizes are known at run time, storage is fixed, matrices are dense and row by row.
+#include <alula/filters/careful_update.hpp>
 #include <alula/math/capacity.hpp>
 #include <alula/math/cholesky.hpp>
 #include <cmath>
@@ -20,6 +21,20 @@ struct LinearSystem {
   T output[kMaxOutputs][kMaxStates] = {};     // C
   T noise[kMaxOutputs][kMaxOutputs] = {};     // R, positive definite
 };
+
+// U'U = P, also where states are known exactly: their rows of U are zero.
+template <int R, class T>
+inline bool factor(const T (*P)[R], T (*U)[R], int n) {
+  T positive[R][R] = {};
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) positive[i][j] = P[i][j];
+    if (P[i][i] == T(0)) positive[i][i] = T(1);
+  }
+  if (cholesky<R>(positive, U, n) < 0) return false;
+  for (int i = 0; i < n; ++i)
+    if (P[i][i] == T(0)) U[i][i] = T(0);
+  return true;
+}
 
 template <class T>
 class Linear {
@@ -51,28 +66,26 @@ class Linear {
   }
 
   // Eq. (3.19) to (3.21) with the readings z that are numbers. Writes their innovations and the
-  // standard deviations of those, NaN for the others; nis: their normalized square. `gain` (states
-  // x outputs), where set: K. Returns how many were used, -1 where their covariance is not
-  // positive.
-  int update(const LinearSystem<T>& system, const T* z, T* innovation, T* deviation, T& nis,
-             T (*gain)[kMaxOutputs] = nullptr) {
+  // standard deviations of those, NaN for the others; nis: their normalized square. Returns how
+  // many were used, -1 where their covariance is not positive.
+  int update(const LinearSystem<T>& system, const T* z, T* innovation, T* deviation, T& nis) {
     const int n = system.states;
-    int present[kMaxOutputs], ny = 0;
     T PC[R][kMaxOutputs], S[kMaxOutputs][kMaxOutputs] = {}, U[kMaxOutputs][kMaxOutputs];
+    T K[R][kMaxOutputs] = {}, e[kMaxOutputs] = {};
+    int present[kMaxOutputs], ny = 0;
     nis = T(0);
     for (int s = 0; s < system.outputs; ++s) {
       innovation[s] = deviation[s] = std::numeric_limits<T>::quiet_NaN();
-      for (int i = 0; gain && i < n; ++i) gain[i][s] = T(0);
       if (std::isfinite(z[s])) present[ny++] = s;
     }
     if (ny == 0) return 0;
-    T K[R][kMaxOutputs] = {}, e[kMaxOutputs] = {};
     for (int i = 0; i < n; ++i)
       for (int s = 0; s < ny; ++s) {
         PC[i][s] = T(0);
         for (int j = 0; j < n; ++j) PC[i][s] += P[i][j] * system.output[present[s]][j];
         K[i][s] = PC[i][s];
       }
+    bool close = false;  // a difference of covariances would cancel more than six digits
     for (int s = 0; s < ny; ++s) {
       const T* row = system.output[present[s]];
       e[s] = z[present[s]];
@@ -83,18 +96,18 @@ class Linear {
       }
       innovation[present[s]] = e[s];
       deviation[present[s]] = std::sqrt(S[s][s]);
+      close = close || !(system.noise[present[s]][present[s]] > T(1e-6) * S[s][s]);
     }
+    if (close) return update_carefully(system, present, ny, e, nis);
     if (cholesky<kMaxOutputs>(S, U, ny) != 0) return -1;
-    for (int i = 0; i < n; ++i) solve<kMaxOutputs>(U, K[i], ny);
     T weighed[kMaxOutputs];
     for (int s = 0; s < ny; ++s) weighed[s] = e[s];
     solve<kMaxOutputs>(U, weighed, ny);
     for (int s = 0; s < ny; ++s) nis += weighed[s] * e[s];
-    for (int i = 0; i < n; ++i)
-      for (int s = 0; s < ny; ++s) {
-        x[i] += K[i][s] * e[s];
-        if (gain) gain[i][present[s]] = K[i][s];
-      }
+    for (int i = 0; i < n; ++i) {
+      solve<kMaxOutputs>(U, K[i], ny);
+      for (int s = 0; s < ny; ++s) x[i] += K[i][s] * e[s];
+    }
     joseph(system, present, ny, K);
     return ny;
   }
@@ -104,7 +117,7 @@ class Linear {
   void joseph(const LinearSystem<T>& system, const int* present, int ny,
               const T (*K)[kMaxOutputs]) {
     const int n = system.states;
-    T A[R][R] = {}, AP[R][R] = {}, KR[R][kMaxOutputs] = {};
+    T A[R][R] = {}, AP[R][R] = {}, KR[R][kMaxOutputs] = {}, U[R][R];
     for (int i = 0; i < n; ++i) {
       A[i][i] = T(1);
       for (int s = 0; s < ny; ++s) {
@@ -121,6 +134,42 @@ class Linear {
         for (int r = 0; r < ny; ++r) s += KR[i][r] * K[j][r];
         P[i][j] = P[j][i] = s;
       }
+    if (cholesky<R>(P, U, n) > 0) {  // directions that rounding has eaten are held
+      multiply_back<R>(U, P, n);
+      for (int i = 0; i < n; ++i) P[i][i] *= kHeldApart<T>;
+    }
+  }
+
+  // On columns instead of covariances (careful_update.hpp), the readings made independent first.
+  int update_carefully(const LinearSystem<T>& system, const int* present, int ny, T* e, T& nis) {
+    constexpr int kColumns = R + kMaxOutputs;
+    const int n = system.states;
+    T X[R][kColumns], Y[kMaxOutputs][kColumns], U[R][R] = {}, root[kMaxOutputs][kMaxOutputs],
+                                                noise[kMaxOutputs][kMaxOutputs] = {},
+                                                unit[kMaxOutputs], d[kMaxOutputs], step[R];
+    for (int s = 0; s < ny; ++s)
+      for (int r = 0; r < ny; ++r) noise[s][r] = system.noise[present[s]][present[r]];
+    if (cholesky<kMaxOutputs>(noise, root, ny) != 0 || !factor(P, U, n)) return -1;
+    for (int i = 0; i < n; ++i)
+      for (int k = 0; k < n; ++k) X[i][k] = U[k][i];
+    for (int s = 0; s < ny; ++s) {  // forward substitution: root' Y = C X, root' e' = e
+      unit[s] = T(1);
+      for (int k = 0; k < n; ++k) {
+        Y[s][k] = T(0);
+        for (int j = 0; j < n; ++j) Y[s][k] += system.output[present[s]][j] * X[j][k];
+      }
+      for (int r = 0; r < s; ++r) {
+        for (int k = 0; k < n; ++k) Y[s][k] -= root[r][s] * Y[r][k];
+        e[s] -= root[r][s] * e[r];
+      }
+      for (int k = 0; k < n; ++k) Y[s][k] /= root[s][s];
+      e[s] /= root[s][s];
+    }
+    if (!careful_update(X, n, Y, ny, n, unit, e, step, d)) return -1;
+    covariance_of<R>(X, n, n + ny, P);
+    for (int i = 0; i < n; ++i) x[i] += step[i];
+    for (int s = 0; s < ny; ++s) nis += (e[s] / d[s]) * (e[s] / d[s]);
+    return ny;
   }
 };
 
@@ -164,7 +213,10 @@ int smooth_linear(Linear<T>& filter, const LinearSystem<T>& system, int samples,
       for (int j = 0; j < n; ++j) filter.P[i][j] = P[i * n + j];
     }
     filter.predict(system, u + k * system.inputs, G);
-    if (cholesky<R>(filter.P, U, n) < 0) return k + 1;
+    if (!factor(filter.P, U, n)) return k + 1;
+    for (int i = 0; i < n; ++i) {
+      if (U[i][i] == T(0)) U[i][i] = T(1);  // known exactly: nothing to divide
+    }
     for (int i = 0; i < n; ++i) solve<R>(U, G[i], n);
     for (int i = 0; i < n; ++i) {
       for (int j = 0; j < n; ++j) {

@@ -5,7 +5,7 @@
 // is squared only to be shown. So deviations may differ by all digits of a number, where a
 // covariance bears half of them.
 // Source: van der Merwe and Wan 2001, "The square-root unscented Kalman filter for state and
-// parameter-estimation", Algorithm 3.1, with the weights of unscented.hpp.
+// parameter-estimation", with the weights of unscented.hpp.
 #include <alula/filters/unscented.hpp>
 #include <alula/math/root_update.hpp>
 
