@@ -10,7 +10,6 @@ from alula.flight import Channel, Maneuver
 from alula.reconstruct import reconstruct
 from alula.reconstruct.problem import make_problem
 
-
 FILTERS = ["ekf", "iekf", "ukf", "srukf"]
 
 

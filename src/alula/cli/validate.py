@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from alula.base.filters import FilterName
 from alula.cli.contract import (
     Command,
     JsonOption,

@@ -1,4 +1,4 @@
-"""The Kalman filters of the core with their Rauch-Tung-Striebel smoother, over all maneuvers in a row.
+"""The core's Kalman filters with Rauch-Tung-Striebel smoother, over all maneuvers in a row.
 
 At the start of each maneuver the motion begins anew, the unknowns carry on; so several maneuvers
 estimate one set of unknowns. The filters themselves are the core's: core/include/alula/filters.
@@ -21,7 +21,6 @@ from alula.reconstruct.solution import RecordSolution, Solution
 from alula.reconstruct.tempering import MOST_PASSES, SETTLED, Start, nearer, restored
 from alula.reconstruct.unknowns import WIND
 
-
 # One filter: its header in core/include/alula/filters, its line in bindings/path.cpp, one here.
 RUNS: Mapping[str, Callable[..., dict[str, Any]]] = {
     "ekf": core.path_ekf,
@@ -32,8 +31,10 @@ RUNS: Mapping[str, Callable[..., dict[str, Any]]] = {
 
 
 def filter_forward(problem: Problem, method: str, picked: Array) -> tuple[Array, Array]:
-    """The filter `method` of RUNS without smoother: states (m, k) and covariances (m, k, k) given the readings so
-    far, at samples `picked` (m,) of all records in a row. Raises BadInput as the solvers do.
+    """The filter `method` of RUNS without smoother: states (m, k) and covariances (m, k, k).
+
+    Given the readings so far, at samples `picked` (m,) of all records in a row. Raises BadInput as
+    solve_filter does.
     """
     stated, used, _ = _settle(problem, method)
     out, _, _ = _run(problem, method, used, smooth=False)

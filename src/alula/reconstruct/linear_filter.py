@@ -112,12 +112,10 @@ def linear_filter(
             raise _wrong(name, f"finite numbers of shape {shape}", f"shape {value.shape}")
     _covariance("P0", P, strict=False)
     L = np.eye(n) if system.gain is None else system.gain
+    whole = np.ascontiguousarray
     out = core.linear_filter(
-        *(np.ascontiguousarray(a) for a in (
-            system.transition, gamma, L @ system.process @ L.T, system.output, system.noise,
-            u, z, x, P,
-        )),
-        smooth=smooth,
+        whole(system.transition), whole(gamma), whole(L @ system.process @ L.T),
+        whole(system.output), whole(system.noise), whole(u), whole(z), whole(x), whole(P), smooth,
     )  # fmt: skip
     if out["done"] < len(z) or out["reached"] > 0:
         raise refuse(
