@@ -244,6 +244,61 @@ TEST(PathFiltersCurved, IteratedIsHonestWhereExtendedIsNot) {
   EXPECT_LT(error_iterated, 0.1 * 0.1 * error_extended);
 }
 
+// One vane, forward speed known: whatever the start, the update ends where prediction and reading
+// together are most likely, found by a search over all speeds; a full step overshoots by far.
+TEST(PathFiltersCurved, IteratedFindsTheMostProbableState) {
+  PathModel<double> model;
+  PathSensor<double> vane;
+  vane.quantity = Quantity::alpha;
+  vane.variance = 1e-4;
+  model.sensors.push(vane);
+  const double m[6] = {}, forward = 10;
+  for (const double start : {-20.0, 5.0, 50.0, 100.0})
+    for (const double z : {-1.4, -0.5, 0.3, 1.5}) {
+      const double sigma = 100;
+      Iterated<double, kShortRow> filter;
+      for (int i = 0; i < 7; ++i) filter.P[i][i] = 1e-8;
+      filter.x[kU] = forward;
+      filter.x[kW] = start;
+      filter.P[kW][kW] = sigma * sigma;
+      double e, d, best = 0, least = 1e300;
+      ASSERT_EQ(filter.update(model, m, &z, &e, &d), 1);
+      EXPECT_EQ(filter.unsettled, 0) << start << ' ' << z;
+      for (double w = -500; w < 500; w += 0.01) {
+        const double of_reading = (z - std::atan(w / forward)) / 0.01,
+                     of_start = (w - start) / sigma;
+        const double cost = of_reading * of_reading + of_start * of_start;
+        if (cost < least) {
+          least = cost;
+          best = w;
+        }
+      }
+      // The search's step, and 1e-3 of the deviation at which the filter stops.
+      EXPECT_NEAR(filter.x[kW], best, 0.01 + 2e-3 * std::sqrt(filter.P[kW][kW])) << start;
+    }
+}
+
+// A vane that shows a flow from behind while forward speed is known to be positive: no state
+// explains it, and the filter says that it found none.
+TEST(PathFiltersCurved, IteratedSaysWhenItHasNotSettled) {
+  PathModel<double> model;
+  PathSensor<double> vane;
+  vane.quantity = Quantity::alpha;
+  vane.variance = 1e-4;
+  model.sensors.push(vane);
+  Iterated<double, kShortRow> filter;
+  for (int i = 0; i < 7; ++i) filter.P[i][i] = 1e-8;
+  filter.x[kU] = 10;
+  filter.x[kW] = 50;
+  filter.P[kW][kW] = 900;
+  const double m[6] = {}, z = -3;
+  double e, d;
+  EXPECT_EQ(filter.update(model, m, &z, &e, &d), 1);
+  EXPECT_EQ(filter.unsettled, 1);
+  EXPECT_TRUE(std::isfinite(filter.x[kW]));
+  EXPECT_GT(filter.P[kW][kW], 0);
+}
+
 template <template <class, int> class Filter>
 void compare_float() {
   const auto model = fourteen_states<double>();

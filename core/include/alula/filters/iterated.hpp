@@ -10,11 +10,9 @@ namespace alula {
 template <class T, int R>
 class Iterated : public Extended<T, R> {
  public:
-  static constexpr int kMostPasses = 20;
-  static constexpr T kSettled = sizeof(T) == 8 ? T(1e-4) : T(1e-2);  // standard deviations
-  // Updates that still moved after the last pass; those by more than a standard deviation are the
-  // extended filter's.
-  int unsettled = 0;
+  static constexpr int kMostPasses = 30;
+  static constexpr T kSettled = sizeof(T) == 8 ? T(1e-3) : T(1e-2);  // standard deviations
+  int unsettled = 0;  // updates that still moved after the last pass
 
   using Extended<T, R>::x;
   using Extended<T, R>::P;
@@ -22,50 +20,80 @@ class Iterated : public Extended<T, R> {
 
   // Innovations and their deviations are those of the prediction: they are what can be white.
   int update(const PathModel<T>& model, const T* u, const T* z, T* innovation, T* deviation) {
-    const int n = model.states, before = repairs;
-    T about[R], step[R], further[kMaxOutputs], spread[kMaxOutputs];
+    const int n = model.states;
+    T base[R], target[R], about[R], step[R], U[R][R], further[kMaxOutputs], spread[kMaxOutputs];
     std::memcpy(before_, P, sizeof P);
-    for (int i = 0; i < n; ++i) about[i] = x[i];
-    int used = linear_about(model, u, z, about, step, innovation, deviation);
+    T misfit, share = T(1);
+    repairs_before_ = repairs;
+    const int used = linear_about(model, u, z, x, step, innovation, deviation, misfit);
     if (used <= 0) return used;
-    T last = T(1e30), moved = T(0);
-    for (int pass = 1; pass < kMostPasses; ++pass) {
-      // A step that is no shorter than the one before it is halved: no going round in circles.
-      moved = distance(about, step, n);
-      if (!(moved < T(1e30)) || moved <= kSettled) break;
-      const T share = pass > 1 && !(moved < last) ? T(0.5) : T(1);
-      for (int i = 0; i < n; ++i) about[i] += share * (x[i] + step[i] - about[i]);
-      last = moved;
-      std::memcpy(P, before_, sizeof P);
-      repairs = before;
-      used = linear_about(model, u, z, about, step, further, spread);
-      if (used < 0) break;
+    T least = misfit;
+    for (int i = 0; i < n; ++i) {
+      base[i] = x[i];
+      target[i] = x[i] + step[i];
     }
-    if (used >= 0) moved = distance(about, step, n);
-    if (used < 0 || !(moved <= kSettled)) {
-      ++unsettled;
-      if (used < 0 || !(moved <= T(1))) {
-        std::memcpy(P, before_, sizeof P);
-        repairs = before;
-        used = linear_about(model, u, z, x, step, further, spread);
+    bool factored = false;
+    for (int pass = 1; pass < kMostPasses; ++pass) {
+      for (int i = 0; i < n; ++i) about[i] = base[i] + share * (target[i] - base[i]);
+      const bool done = linear_about(model, u, z, about, step, further, spread, misfit) > 0;
+      if (done && distance(about, step, n) <= kSettled) {
+        for (int i = 0; i < n; ++i) x[i] += step[i];
+        return used;
+      }
+      // A step that makes state and readings together less likely is halved.
+      if (!factored && cholesky<R>(before_, U, n) < 0) return -1;
+      factored = true;
+      misfit += from_prediction(U, about, n);
+      if (done && misfit < least) {
+        least = misfit;
+        share = T(1);
+        for (int i = 0; i < n; ++i) {
+          base[i] = about[i];
+          target[i] = x[i] + step[i];
+        }
+      } else {
+        share *= T(0.5);
       }
     }
-    for (int i = 0; i < n; ++i) x[i] += step[i];
+    ++unsettled;
+    if (linear_about(model, u, z, base, step, further, spread, misfit) < 0) return -1;
+    for (int i = 0; i < n; ++i) x[i] = base[i];
     return used;
   }
 
  private:
   using Extended<T, R>::H_;
   using Extended<T, R>::before_;
+  int repairs_before_ = 0;
 
-  // The update from x and P with the readings linear about `about`, Eq. (3.28).
+  // The update from x and `before_` with the readings linear about `about`, Eq. (3.28). misfit: of
+  // the readings at `about`, in their variances.
   int linear_about(const PathModel<T>& model, const T* u, const T* z, const T* about, T* step,
-                   T* innovation, T* deviation) {
+                   T* innovation, T* deviation, T& misfit) {
     T predicted[kMaxOutputs];
+    std::memcpy(P, before_, sizeof P);
+    repairs = repairs_before_;
     path_outputs_jacobian<R>(model, about, u, predicted, H_);
-    for (int s = 0; s < model.sensors.size(); ++s)
+    misfit = T(0);
+    for (int s = 0; s < model.sensors.size(); ++s) {
+      if (!std::isfinite(z[s])) continue;
+      const T e = wrapped(model.sensors[s].quantity, z[s] - predicted[s]);
+      misfit += e * e / model.sensors[s].variance;
       for (int j = 0; j < model.states; ++j) predicted[s] += H_[s][j] * (x[j] - about[j]);
+    }
     return this->take_up(model, z, predicted, step, innovation, deviation);
+  }
+
+  // (about - x)' before^-1 (about - x), U the factor of `before_`.
+  T from_prediction(const T (*U)[R], const T* about, int n) const {
+    T d[R], total = T(0);
+    for (int i = 0; i < n; ++i) d[i] = about[i] - x[i];
+    for (int i = 0; i < n; ++i) {  // U' y = d
+      d[i] /= U[i][i];
+      total += d[i] * d[i];
+      for (int j = i + 1; j < n; ++j) d[j] -= U[i][j] * d[i];
+    }
+    return total;
   }
 
   // How far x + step is from `about`, largest of the states, in standard deviations.
