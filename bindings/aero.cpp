@@ -50,7 +50,9 @@ void evaluate(const AeroTable& bound, Vector values, Matrix variables, MatrixOut
   double slots[alula::kMaxSlots];
   for (std::size_t i = 0; i < variables.shape(0); ++i) {
     for (std::size_t j = 0; j < alula::kVariables; ++j) slots[j] = variables(i, j);
-    alula::fill_slots(self, slots, bound.lookups->views.data());
+    alula::fill_slots(self, slots, bound.lookups->views.data(), [&](const double* s) {
+      return alula::coefficient(self, values.data(), s, alula::kLift);
+    });
     const auto c = alula::coefficients(self, values.data(), slots);
     for (std::size_t j = 0; j < alula::kCoefficients; ++j) out(i, j) = c[j];
   }
@@ -64,7 +66,8 @@ void bind_aero(nb::module_& m) {
       "An aerodynamic model as steps (operation, a, b, knot) or (operation, a,\n"
       "b, knot, c, table) and terms (coefficient, slot). Operations: 0 multiply,\n"
       "1 absolute, 2 ramp, 3 sign, 4 lookup of table number `table` at slots a,\n"
-      "b, c (0 for axes it does not have). tables: (breakpoints of each axis,\n"
+      "b, c (0 for axes it does not have), 5 the lift coefficient. tables: (breakpoints of each "
+      "axis,\n"
       "values row by row, cubic, continued by lines); their numbers are copied.")
       .def("__init__", &build, nb::arg("steps"), nb::arg("terms"),
            nb::arg("tables") = std::vector<TableArgument>())

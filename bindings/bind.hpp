@@ -26,3 +26,4 @@ void bind_aero(nb::module_& m);
 void bind_atmosphere(nb::module_& m);
 void bind_simulate(nb::module_& m);
 void bind_aircraft(nb::module_& m);
+void bind_output_error(nb::module_& m);

@@ -10,4 +10,5 @@ NB_MODULE(ALULA_MODULE, m) {
   bind_atmosphere(m);
   bind_aircraft(m);
   bind_simulate(m);
+  bind_output_error(m);
 }

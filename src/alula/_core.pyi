@@ -116,7 +116,7 @@ class TermTable:
     An aerodynamic model as steps (operation, a, b, knot) or (operation, a,
     b, knot, c, table) and terms (coefficient, slot). Operations: 0 multiply,
     1 absolute, 2 ramp, 3 sign, 4 lookup of table number `table` at slots a,
-    b, c (0 for axes it does not have). tables: (breakpoints of each axis,
+    b, c (0 for axes it does not have), 5 the lift coefficient. tables: (breakpoints of each axis,
     values row by row, cubic, continued by lines); their numbers are copied.
     """
 
@@ -254,3 +254,35 @@ def velocity_at(v: Annotated[NDArray[numpy.float64], dict(shape=(None, None), or
 
 def readings(truth: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], normal: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], scale: float, bias: float, sigma: float, step: float, out: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]) -> None:
     """What a sensor with these errors reads."""
+
+class ManeuverFit:
+    """
+    One maneuver and the model whose values are asked for. reference: S, b, c. body: mass
+    (kg), gravity. arm: from the CG to the moments' reference point. states: indices into
+    V alpha beta p q r phi theta; the others come from the inputs. pull (8): 1/s. outputs:
+    indices into the same eight and ax ay az pdot qdot rdot. inputs (n, 28): the eight as
+    measured, de da dr df dt, density, 1 / speed of sound, force (3), moment (3), measured
+    coefficients (6), unused. measured (n, outputs): NaN where there is none. Copies are kept.
+    """
+
+    def __init__(self, aero: TermTable, stability_axes: bool, reference: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], body: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], inertia: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], arm: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], states: Sequence[int], pull: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], outputs: Sequence[int], t: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], inputs: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], measured: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], substeps: int = 1) -> None: ...
+
+    def columns(self, count: int, terms: Sequence[int], weights: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], initial: Sequence[int], bias: Sequence[int]) -> None:
+        """
+        Which column of the parameters each term, initial variable (8) and output's bias is;
+        -1: fixed. A term's slope by its column is its weight.
+        """
+
+    def sums(self, values: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], initial: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], bias: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> tuple:
+        """
+        Samples flown (fewer than all: diverged), and by output: information (k, stride),
+        gradient (stride), squared residuals, samples.
+        """
+
+    def flight(self, values: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], initial: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], bias: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], sensitivity: bool = True) -> tuple:
+        """
+        Samples flown, outputs (n, outputs), their slopes (n, outputs, k), or (0, ...).
+        """
+
+    @property
+    def axes(self) -> str: ...

@@ -110,9 +110,17 @@ class Path_(Strict):
     maneuvers: dict[str, dict[str, float]]
 
 
+class Parted(Strict):
+    learned: list[str]
+    held_out: list[str]
+
+
 class Identified(Strict):
     method: str
     status: str
+    uncertainty: str = Field(min_length=1)
+    formulas: dict[str, str]
+    maneuvers: Parted
     parameters: list[Parameter]
     fit: dict[str, Fit]
     reconstruction: Path_

@@ -22,6 +22,16 @@ Format = Literal["auto", "csv", "ascii", "npz", "mat", "hdf5", "parquet"]
 Source = Annotated[int, Field(ge=1)] | Annotated[str, Field(min_length=1)]
 Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
 State = Literal["h", "u", "v", "w", "phi", "theta", "psi"]
+Option = (
+    float
+    | str
+    | bool
+    | list[float]
+    | list[str]
+    | dict[str, float]
+    | dict[str, str]
+    | dict[str, list[float]]
+)
 Identifier = Annotated[str, Field(pattern=r"^[\w][\w .+-]*$", max_length=80)]
 
 
@@ -228,7 +238,14 @@ class IdentifySpec(Strict):
     method: str = "ee"
     coefficients_from: Literal["motion", "recorded"] = "motion"
     models: dict[str, str] = {}
-    options: dict[str, float | str | bool | list[float] | dict[str, float]] = {}
+    options: dict[str, Option] = {}
+    hold_out: float = Field(
+        default=0.2,
+        ge=0.0,
+        le=0.5,
+        description="share of the maneuvers held out where none is marked and there are five or "
+        "more of an aspect; 0: none",
+    )
 
 
 class Project(Strict):

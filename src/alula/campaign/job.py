@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 
@@ -15,20 +15,22 @@ from alula.base.messages import Message, note, refuse
 from alula.base.project import Project
 from alula.base.provenance import provenance
 from alula.campaign.check import Checked, Progress, check_project
+from alula.campaign.hold_out import with_held_out
+from alula.campaign.measured import engines_of, measured_maneuvers
+from alula.campaign.methods import IDENTIFIERS, IdentifyTask, identify_by, method_name
 from alula.flight import Flight, Maneuver
 from alula.identify import (
     CoefficientData,
     Identification,
     Reference,
-    Thrust,
     coefficients_as_recorded,
     coefficients_from_motion,
-    identify_equation_error,
 )
-from alula.identify.equation_error import LONGITUDINAL
+from alula.identify.task import LONGITUDINAL
 from alula.reconstruct import Reconstruction, Segment, reconstruct
-from alula.reconstruct.transfer import engines_on
 from alula.report import ReportInput
+
+__all__ = ["IDENTIFIERS", "Job", "identify_project", "report_of", "run_project"]
 
 
 @dataclass(frozen=True)
@@ -60,16 +62,18 @@ def run_project(
     method: str | None = None,
     only: Sequence[str] = (),
     truth: Mapping[str, float] | None = None,
+    seed: int | None = None,
     progress: Progress = lambda _: None,
 ) -> Job:
     """The main job. filter, method: instead of the project's. truth: shown beside the estimates.
+    seed: of what is random: the maneuvers held out, the draws of a bootstrap.
 
     Raises BadInput for what cannot be used.
     """
     stamps = [time.perf_counter()]
-    checked = check_project(path, only, progress)
+    checked = with_held_out(check_project(path, only, progress), seed or 0)
     project = checked.project
-    identifier = IDENTIFIERS[_method(method or project.identify.method)]
+    chosen = method_name(method or project.identify.method)
     stamps.append(time.perf_counter())
     if not checked.maneuvers:
         raise refuse(
@@ -93,7 +97,9 @@ def run_project(
     identification = NOTHING_ASKED
     if models:
         data = coefficient_data(checked, reconstruction, shared=spec.share == "all")
-        identification = identifier(data, models, project.identify.options, truth)
+        identification = identify_project(
+            checked, reconstruction, data, models, chosen, truth, seed or 0
+        )
     stamps.append(time.perf_counter())
     stages = ("read", "reconstruct", "identify")
     seconds = {name: b - a for name, (a, b) in zip(stages, pairwise(stamps), strict=True)}
@@ -127,21 +133,39 @@ def _from_motion(
     motion = segment.motion
     fuel = np.zeros(len(motion.t)) if motion.fuel_used is None else motion.fuel_used
     mass = aircraft.mass_properties(fuel)
-    forces = engines_on(flight, aircraft, motion.t)
     return coefficients_from_motion(
         motion,
         reference,
         mass=mass.mass,
         cg=mass.cg,
         inertia=mass.inertia,
-        thrust=[
-            Thrust(e.position, e.direction, forces[e.name], e.thrust_se)
-            for e in aircraft.engines
-            if e.name in forces
-        ],
+        thrust=engines_of(flight, aircraft, motion),
         perturbed=segment.perturbed,
         shared=shared,
     )
+
+
+def identify_project(
+    checked: Checked,
+    reconstruction: Reconstruction,
+    data: tuple[CoefficientData, ...],
+    models: Mapping[str, str],
+    method: str,
+    truth: Mapping[str, float] | None = None,
+    seed: int = 0,
+) -> Identification:
+    """The models identified from reconstructed maneuvers by the method of that name."""
+    base = checked.aircraft
+    task = IdentifyTask(
+        data=data,
+        measure=partial(measured_maneuvers, checked, reconstruction),
+        models=models,
+        reference=Reference(base.S, base.b, base.c, base.reference_point),
+        options=checked.project.identify.options,
+        truth=truth,
+        seed=seed,
+    )
+    return identify_by(method, task)
 
 
 def report_of(job: Job, date: str, seed: int | None) -> ReportInput:
@@ -165,52 +189,6 @@ def report_of(job: Job, date: str, seed: int | None) -> ReportInput:
     )
 
 
-def _equation_error(
-    data: Sequence[CoefficientData],
-    models: Mapping[str, str],
-    options: Mapping[str, Any],
-    truth: Mapping[str, float] | None,
-) -> Identification:
-    known = {"weighting", "common_constant", "scales"}
-    if options.keys() - known:
-        raise refuse(
-            "unknown_option",
-            where="[identify.options]",
-            expected="only " + ", ".join(sorted(known)),
-            found=", ".join(sorted(options.keys() - known)),
-            do="Take the entry out.",
-        )
-    for name, kind, wanted in (
-        ("weighting", str, "text"),
-        ("common_constant", bool, "true or false"),
-        ("scales", Mapping, "a table of numbers"),
-    ):
-        if name in options and not isinstance(options[name], kind):
-            raise refuse(
-                "bad_option",
-                where=f"identify.options.{name}",
-                expected=wanted,
-                found=repr(options[name]),
-                do="Correct it.",
-            )
-    return identify_equation_error(data, models, **options, truth=truth)
-
-
-# One method: one file in identify/ and one entry here.
-IDENTIFIERS: Mapping[
-    str,
-    Callable[
-        [
-            Sequence[CoefficientData],
-            Mapping[str, str],
-            Mapping[str, Any],
-            Mapping[str, float] | None,
-        ],
-        Identification,
-    ],
-] = {"ee": _equation_error}
-
-
 # A project without models wants the flight path only.
 NOTHING_ASKED = Identification(
     method="none",
@@ -220,18 +198,6 @@ NOTHING_ASKED = Identification(
     covariance=np.zeros((0, 0)),
     status="no [identify.models] in the project: the flight path was reconstructed, no more",
 )
-
-
-def _method(name: str) -> str:
-    if name in IDENTIFIERS:
-        return name
-    raise refuse(
-        "unknown_method",
-        where="identify.method",
-        expected="one of " + ", ".join(IDENTIFIERS),
-        found=f"'{name}'",
-        do="Choose one of these.",
-    )
 
 
 def _models(

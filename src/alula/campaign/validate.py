@@ -13,13 +13,13 @@ import numpy as np
 from alula.base.messages import Message, note, refuse, warn
 from alula.base.provenance import provenance
 from alula.campaign.check import Checked, Progress, check_project
+from alula.campaign.hold_out import with_held_out
 from alula.campaign.job import (
-    IDENTIFIERS,
     NOTHING_ASKED,
     Job,
-    _method,
     _models,
     coefficient_data,
+    identify_project,
 )
 from alula.campaign.learned import LEARNED, learned_from, seen_by
 from alula.flight import Maneuver
@@ -66,12 +66,16 @@ def run_validation(
     """Validate by flying. model: a file; None identifies the project's own.
 
     only: maneuvers to fly; where the model is identified here they are held out of the estimate.
-    Without it those marked held_out are flown, and where none is, all, labeled as seen. Raises
+    Without it those held out are flown, and where none is, all, labeled as seen. Raises
     BadInput for what cannot be used.
     """
     given = None if model is None else load_model(model)
     stamps = [time.perf_counter()]
-    checked = _held_out(check_project(path, (), progress), only)
+    checked = check_project(path, (), progress)
+    if only:
+        checked = _held_out(checked, only)
+    elif given is None:  # a file's model is flown on all: each window says whether it saw it
+        checked = with_held_out(checked, seed or 0)
     chosen = _chosen(checked, only)
     stamps.append(time.perf_counter())
     project = checked.project
@@ -91,8 +95,9 @@ def run_validation(
         progress("identifying")
         models, said = _models(project, checked.maneuvers)
         messages += said
-        identifier = IDENTIFIERS[_method(project.identify.method)]
-        identification = identifier(data, models, project.identify.options, None)
+        identification = identify_project(
+            checked, reconstruction, data, models, project.identify.method, seed=seed or 0
+        )
         learned = [d for d in data if not d.maneuver.held_out]
         given = identified_model(
             identification,
@@ -164,8 +169,6 @@ def report_of_validation(done: ValidationJob, date: str, seed: int | None) -> Re
 
 def _held_out(checked: Checked, only: Sequence[str]) -> Checked:
     """The project with the maneuvers that were asked for held out of the estimate."""
-    if not only:
-        return checked
     known = {name for m in checked.maneuvers for name in _names(checked, m)}
     for id in only:
         if id not in known:

@@ -10,6 +10,7 @@ import typer
 
 from alula.base.messages import refuse
 from alula.cli.check import check
+from alula.cli.compare import compare
 from alula.cli.contract import Command
 from alula.cli.export import export
 from alula.cli.fly import fly
@@ -29,7 +30,21 @@ app = typer.Typer(
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )
-for command in (new, check, identify, plan, fly, trim, linearize, modes, validate, export, schema):
+COMMANDS = (
+    new,
+    check,
+    identify,
+    compare,
+    plan,
+    fly,
+    trim,
+    linearize,
+    modes,
+    validate,
+    export,
+    schema,
+)
+for command in COMMANDS:
     app.command()(command)
 
 

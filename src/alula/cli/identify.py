@@ -27,6 +27,8 @@ class Method(StrEnum):
     """How the model is identified."""
 
     ee = "ee"
+    oe = "oe"
+    fd = "fd"
 
 
 def identify(
@@ -71,6 +73,7 @@ def identify(
             method=None if method is None else method.value,
             only=maneuver or (),
             truth=None if truth is None else _truth(truth),
+            seed=seed,
             progress=command.progress,
         )
         command.messages = job.all_messages()
@@ -97,6 +100,7 @@ def result_of(job: Job) -> dict[str, Any]:
     return {
         "method": found.method,
         "status": found.status,
+        "uncertainty": found.uncertainty,
         "parameters": [
             {
                 "name": p.name,
@@ -113,6 +117,11 @@ def result_of(job: Job) -> dict[str, Any]:
             }
             for p in found.parameters
         ],
+        "formulas": dict(found.formulas) or {c: f.formula for c, f in found.fits.items()},
+        "maneuvers": {
+            "learned": [m.id for m in job.checked.maneuvers if not m.held_out],
+            "held_out": [m.id for m in job.checked.maneuvers if m.held_out],
+        },
         "fit": {
             name: {
                 "formula": f.formula,

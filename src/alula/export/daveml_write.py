@@ -78,6 +78,7 @@ def daveml_text(model: AeroModel, *, author: str, date: str, cases: int = 20) ->
     sequence) let the receiver check his reading. author: for the file's header. date: ISO 8601.
     Raises BadInput for a cubic table, which the standard's splines are not.
     """
+    model.check_without_lift("DAVE-ML")
     for name, table in model.tables.items():
         if table.interpolation != "linear":
             raise refuse(

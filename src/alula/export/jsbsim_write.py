@@ -45,6 +45,7 @@ def jsbsim_text(
     engines are functions that make their forces and moments. Raises BadInput where JSBSim cannot
     hold the model.
     """
+    model.check_without_lift("JSBSim")
     root = Element("fdm_config", name=aircraft.name, version="2.0", release="BETA")
     _header(root, aircraft, model, author, date)
     _metrics(root, model)

@@ -21,9 +21,11 @@ class LeastSquares:
     """A solution with n samples and k parameters, of which r combinations are determined.
 
     value: (k,), of smallest norm in scaled parameters where r < k. residual: (n,) measured minus
-    model, unweighted. dispersion: (k, k), (X' W X)^-1 within the determined combinations. variance:
-    residual variance of unit weight. null: (k, k - r) orthonormal directions of the scaled
-    parameters (value times `scale`) that do not change the fit at all. scale: (k,) column norms.
+    model, unweighted. dispersion: (k, k) D in value = D X' W z, here (X' W X)^-1 within the
+    determined combinations. variance: residual variance of unit weight. null: (k, k - r)
+    orthonormal directions of the scaled parameters (value times `scale`) that do not change the fit
+    at all. scale: (k,) column norms. spread: (k, k), D X' W X D where the method is biased; None
+    where it is D itself.
     """
 
     value: Array
@@ -32,11 +34,12 @@ class LeastSquares:
     variance: float
     null: Array
     scale: Array
+    spread: Array | None = None
 
     @property
     def covariance(self) -> Array:
-        """Covariance (k, k) if residuals were white: variance times dispersion."""
-        return self.variance * self.dispersion
+        """Covariance (k, k) if residuals were white."""
+        return self.variance * (self.dispersion if self.spread is None else self.spread)
 
 
 def least_squares(regressors: Array, measured: Array, weight: Array | None = None) -> LeastSquares:

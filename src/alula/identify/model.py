@@ -34,7 +34,8 @@ def identified_model(
     range of validity. A parameter that nothing excited is left out, and the provenance says so.
     Raises BadInput where parameters are tied to one another: then no values exist to choose.
     """
-    chosen = axes or ("stability" if {"CD", "CL"} & result.fits.keys() else "body")
+    asked = dict(result.formulas) or {c: fit.formula for c, fit in result.fits.items()}
+    chosen = axes or ("stability" if {"CD", "CL"} & asked.keys() else "body")
     foreign = {"CX", "CZ"} if chosen == "stability" else {"CD", "CL"}
     tied = [p.name for p in result.parameters if p.tied_to and p.coefficient not in foreign]
     if tied:
@@ -48,11 +49,11 @@ def identified_model(
     formulas: dict[str, str] = {}
     rows: dict[str, Array] = {}
     left_out = []
-    for coefficient, fit in result.fits.items():
+    for coefficient, formula in asked.items():
         if coefficient in foreign:
             continue
         kept = []
-        for term in parse(fit.formula):
+        for term in parse(formula):
             label = term.name(coefficient)
             row = _row(result.parameters, label, label == constant_name(coefficient), constant_of)
             if row is None:
@@ -62,6 +63,14 @@ def identified_model(
                 rows[label] = row
         if kept:
             formulas[coefficient] = " + ".join(kept)
+    if not rows:
+        raise refuse(
+            "not_identifiable",
+            where=f"model '{name}'",
+            expected="at least one parameter with a value",
+            found=result.status,
+            do="Without an estimate there is no model to write.",
+        )
     transform = np.vstack(list(rows.values()))
     used = np.flatnonzero(np.any(transform != 0.0, axis=0))
     transform = transform[:, used]

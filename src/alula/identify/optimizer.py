@@ -25,6 +25,7 @@ Algorithm = Literal["gauss_newton", "levenberg_marquardt"]
 CLOSE = 1e-4  # standard errors: predicted step at which the minimum is reached
 HALVINGS = 12
 DAMPING = 1e-3  # first of Levenberg-Marquardt (Dittrich 2016, after Eq. (3.65))
+SMALLEST_DAMPING = 1e-12
 ROUNDING = 1e-13  # of the scaled information's largest eigenvalue: below it there is none
 FLAT = 1e-12  # relative change of the cost that rounding alone can make
 
@@ -90,16 +91,19 @@ def minimize(
     algorithm: Algorithm = "gauss_newton",
     lower: Array | None = None,
     upper: Array | None = None,
-    iterations: int = 50,
+    largest: Array | None = None,
+    iterations: int = 200,
     close: float = CLOSE,
 ) -> Minimum:
     """The parameters (k,) of least cost, from `start`, within `lower` and `upper` (k,).
 
-    close: predicted step, in standard errors, that counts as converged. Never raises for a search
+    largest: (k,) longest step of each parameter in one iteration; infinite by default. close:
+    predicted step, in standard errors, that counts as converged. Never raises for a search
     that fails: `converged` is False then and `why` says what happened.
     """
     low = np.full(len(start), -np.inf) if lower is None else lower
     high = np.full(len(start), np.inf) if upper is None else upper
+    far = np.full(len(start), np.inf) if largest is None else largest
     p = np.clip(np.asarray(start, dtype=float), low, high)
     point = likelihood(p, True)
     if point is None or not _finite(point):
@@ -116,13 +120,14 @@ def minimize(
             why = f"converged: the next step is {decrement:.1g} standard errors"
             return _end(p, point, True, why, i, held, history)
         found = None
+        plain = np.clip(plain, -far, far)
         for _ in range(HALVINGS):
-            step = _step(point, held, damping) if damping else plain
+            step = np.clip(_step(point, held, damping), -far, far) if damping else plain
             trial = np.clip(p + step, low, high)
             there = likelihood(trial, False)
             if there is not None and np.isfinite(there.cost) and there.cost < point.cost:
                 found = trial
-                damping /= 10.0
+                damping = max(damping / 10.0, SMALLEST_DAMPING) if damping else 0.0
                 break
             if damping:
                 damping = max(10.0 * damping, DAMPING)

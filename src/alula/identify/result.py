@@ -15,6 +15,9 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
 
+    from alula.identify.diagnostics import Diagnostics
+    from alula.identify.structure import Structure
+
 Verdict = Literal["ok", "weak", "not_identifiable"]
 
 
@@ -31,7 +34,9 @@ class Parameter:
     """One estimated parameter.
 
     se_white: standard error if residuals were white. se: with coloured residuals and the
-    reconstruction's uncertainty. ci95: by `se` and Student's t.
+    reconstruction's uncertainty. ci95: by `se` and Student's t. bias: of an estimate that is biased
+    by its method (ridge, principal components), its estimated bias, which `se` leaves out and
+    `ci95` includes; None where the method is unbiased.
     """
 
     name: str  # 'Cm_alpha'; constants of several maneuvers: 'Cm_0[elevator]'
@@ -45,11 +50,16 @@ class Parameter:
     unit: str
     vif: float  # variance inflation factor
     truth: float | None = None
+    bias: float | None = None
 
 
 @dataclass(frozen=True)
 class Fit:
-    """How one coefficient's model fits, over all its maneuvers."""
+    """How one coefficient's model fits, over all its maneuvers.
+
+    diagnostics: whether the model is enough and what the residuals say. structure: how its terms
+    were chosen. None where the method does not tell.
+    """
 
     coefficient: str
     formula: str
@@ -59,6 +69,8 @@ class Fit:
     n_held_out: int
     r2_held_out: float
     durbin_watson: float
+    diagnostics: Diagnostics | None = None
+    structure: Structure | None = None
 
 
 @dataclass(frozen=True)
@@ -74,11 +86,30 @@ class Series:
 
 
 @dataclass(frozen=True)
+class History:
+    """Estimates over time, of a recursive method, over one maneuver.
+
+    names: (k,) of the parameters. t: (n,) s. value: (n, k). se: (n, k) standard errors as the
+    method has them in flight, NaN before there are enough samples. factor: (n,) forgetting used.
+    """
+
+    coefficient: str
+    maneuver: str
+    names: tuple[str, ...]
+    t: Array
+    value: Array
+    se: Array
+    factor: Array
+
+
+@dataclass(frozen=True)
 class Identification:
     """The result of one identification; statsmodels' words for what they know.
 
     A parameter that is not identifiable has NaN for value and errors, and NaN in `covariance`.
-    labels: what a coefficient includes beyond aerodynamics ('including thrust').
+    labels: what a coefficient includes beyond aerodynamics ('including thrust'). fits: by
+    coefficient, or by output where outputs are compared; formulas: by coefficient, where fits are
+    not. uncertainty: what the parameters' `se` is, in words.
     """
 
     method: str
@@ -89,6 +120,8 @@ class Identification:
     status: str
     messages: tuple[Message, ...] = ()
     labels: Mapping[str, str] = field(default_factory=dict)
+    formulas: Mapping[str, str] = field(default_factory=dict)
+    uncertainty: str = "coloured residuals"
 
     def __getitem__(self, name: str) -> Parameter:
         """The parameter `name`; raises KeyError."""

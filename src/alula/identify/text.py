@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from textwrap import wrap
+
 from alula.identify.result import Identification, Parameter
 
 _WIDTH = 104
@@ -22,31 +24,47 @@ def summary(result: Identification) -> str:
             f"{held}{fit.n_held_out:>10d}  {fit.formula}{label}"
         )
     lines += ["-" * _WIDTH, _header(result), "-" * _WIDTH]
-    lines += [_row(p) for p in result.parameters]
+    lines += [_row(p, _name_width(result)) for p in result.parameters]
     lines += ["=" * _WIDTH, result.status]
+    for name, fit in result.fits.items():
+        if fit.diagnostics:
+            words = f"{name}: {fit.diagnostics.words}"
+            lines += wrap(words, _WIDTH, subsequent_indent="    ")
     unseen = [name for name, fit in result.fits.items() if not fit.n_held_out]
     if unseen:
         lines.append(
             f"not validated: {', '.join(unseen)}: no maneuver is held out, so R2 tells the fit only"
         )
     lines.append(
-        "se: coloured residuals and the uncertainty of what came before; se white: as if residuals "
-        "were white;\nthe interval takes Student's t with the degrees of freedom of coloured "
-        "residuals."
+        f"se: {result.uncertainty}; se white: as if residuals were white;\nthe interval takes "
+        "Student's t with the degrees of freedom of coloured residuals."
     )
+    if any(p.bias is not None for p in result.parameters):
+        lines.append("biased estimates: the interval includes the estimated bias, se does not.")
     return "\n".join(lines)
+
+
+def _name_width(result: Identification) -> int:
+    return max([18, *(len(p.name) + 1 for p in result.parameters)])
 
 
 def _header(result: Identification) -> str:
     truth = any(p.truth is not None for p in result.parameters)
+    biased = any(p.bias is not None for p in result.parameters)
     return (
-        f"{'parameter':<18}{'value':>12}{'se':>11}{'se white':>11}{'[0.025':>12}{'0.975]':>12}"
-        f"{'unit':>9}{'VIF':>8}" + (f"{'truth':>11}" if truth else "") + "  verdict"
+        f"{'parameter':<{_name_width(result)}}{'value':>12}{'se':>11}{'se white':>11}"
+        f"{'[0.025':>12}{'0.975]':>12}"
+        f"{'unit':>9}{'VIF':>8}"
+        + (f"{'truth':>11}" if truth else "")
+        + (f"{'bias':>10}" if biased else "")
+        + "  verdict"
     )
 
 
-def _row(p: Parameter) -> str:
+def _row(p: Parameter, wide: int) -> str:
     truth = "" if p.truth is None else f"{p.truth:>11.5g}"
+    if p.bias is not None:
+        truth += f"{p.bias:>10.2g}"
     unit = "" if p.unit == "1" else p.unit
     if p.verdict == "not_identifiable":
         gap = f"{'-':>12}{'-':>11}{'-':>11}{'-':>12}{'-':>12}"
@@ -55,8 +73,8 @@ def _row(p: Parameter) -> str:
             for tie in p.tied_to
         )
         words = "not identifiable" + (f": only {p.name} {tied}" if tied else ": not excited")
-        return f"{p.name:<18}{gap}{unit:>9}{p.vif:>8.3g}{truth}  {words}"
+        return f"{p.name:<{wide}}{gap}{unit:>9}{p.vif:>8.3g}{truth}  {words}"
     return (
-        f"{p.name:<18}{p.value:>12.5g}{p.se:>11.3g}{p.se_white:>11.3g}{p.ci95[0]:>12.4g}"
+        f"{p.name:<{wide}}{p.value:>12.5g}{p.se:>11.3g}{p.se_white:>11.3g}{p.ci95[0]:>12.4g}"
         f"{p.ci95[1]:>12.4g}{unit:>9}{p.vif:>8.3g}{truth}  {p.verdict}"
     )

@@ -53,7 +53,7 @@ def unit(coefficient: str, name: str) -> str:
             radians += int(angle[3] or 1)
         elif speed:
             speeds += int(speed[1] or 1)
-        elif not re.match(r"(0|dt|mach)\^?\d*$", token):
+        elif not re.match(r"(0|dt|mach|CL)\^?\d*$", token):
             return ""
     parts = []
     if radians:

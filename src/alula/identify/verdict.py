@@ -53,12 +53,16 @@ def assess(
     that are good enough, by name. units: by name, where the names do not tell them.
     """
     covariance = fit.coloured.covariance + added
-    typical = [typical_magnitude(coefficient, name.split("[")[0]) for name in fit.names]
-    lost = unresolved(fit, covariance, typical)
-    inflation = variance_inflation(fit)
+    typical = [typical_magnitude(n.split("_")[0], n.split("[")[0]) for n in fit.names]
+    # What the data determine does not depend on the method: a biased one would hide it.
+    judge = fit if fit.ordinary is None else fit.ordinary
+    lost = unresolved(judge, judge.coloured.covariance + added, typical)
+    inflation = variance_inflation(judge)
     white = np.sqrt(np.diag(fit.solution.covariance))
     se = np.sqrt(np.diag(covariance))
-    half = _half_width(fit, added)
+    bias = fit.bias
+    half = _half_width(fit, added, np.zeros(len(se)) if bias is None else bias)
+    total = se if bias is None else np.hypot(se, bias)
     parameters = []
     for i, name in enumerate(fit.names):
         value, gone = float(fit.solution.value[i]), lost.get(name)
@@ -73,11 +77,12 @@ def assess(
                 ci95=(np.nan, np.nan) if gone else ci95,
                 verdict="not_identifiable"
                 if gone
-                else verdict(value, float(se[i]), ci95, scales.get(name)),
+                else verdict(value, float(total[i]), ci95, scales.get(name)),
                 tied_to=gone.tied_to if gone else (),
                 unit=unit(coefficient, name) if units is None else units[name],
                 vif=np.inf if gone and gone.reason == "collinear" else float(inflation[i]),
                 truth=truth.get(name),
+                bias=None if bias is None else np.nan if gone else float(bias[i]),
             )
         )
     messages = [_explain(coefficient, name, why, fit) for name, why in lost.items()]
@@ -96,10 +101,12 @@ def combination(name: str, why: Unresolved) -> str:
     )
 
 
-def _half_width(fit: Regression, added: Array) -> Array:
-    """Half of the 95 % interval. The added variance counts as known (Welch-Satterthwaite)."""
+def _half_width(fit: Regression, added: Array, bias: Array) -> Array:
+    """Half of the 95 % interval. The added variance counts as known (Welch-Satterthwaite), and so
+    does the square of a bias (k,).
+    """
     own = np.diag(fit.coloured.corrected)
-    total = own + np.diag(added)
+    total = own + np.diag(added) + bias**2
     share = np.where(own > 0.0, own / np.where(total > 0.0, total, 1.0), 1.0)
     dof = fit.coloured.dof / share**2
     out: Array = special.stdtrit(dof, 0.975) * np.sqrt(total)

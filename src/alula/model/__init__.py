@@ -6,11 +6,12 @@ from alula.model.grammar import parse, reference_scales, regressors
 from alula.model.lookup import LookupTable, lookup_table
 from alula.model.stall import Stall
 from alula.model.table import evaluate_in_core, to_table
-from alula.model.terms import COEFFICIENTS, VARIABLES, Factor, Term
+from alula.model.terms import COEFFICIENTS, LIFT, VARIABLES, Factor, Term
 
 __all__ = [
     "AXES",
     "COEFFICIENTS",
+    "LIFT",
     "VARIABLES",
     "AeroModel",
     "Factor",

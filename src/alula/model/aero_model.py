@@ -13,10 +13,10 @@ import numpy as np
 
 from alula.base.arrays import Array, frozen
 from alula.base.messages import refuse
-from alula.model.grammar import parse
+from alula.model.grammar import check_lift, parse
 from alula.model.lookup import LookupTable, check_table_name
 from alula.model.stall import STALL_KEYS, Stall, check_stall
-from alula.model.terms import Term
+from alula.model.terms import LIFT, Term
 
 Axes = Literal["body", "stability"]
 
@@ -93,9 +93,27 @@ class AeroModel:
         """
         n = np.broadcast_shapes(*(np.shape(v) for v in variables.values()))
         out = {c: np.zeros(n) for c in AXES[self.axes]}
-        for (coefficient, term), value in zip(self.terms, self.values, strict=True):
-            out[coefficient] += value * term.values(variables)
+        known = {**variables, LIFT: out[LIFT]} if self.axes == "stability" else variables
+        valued = list(zip(self.terms, self.values, strict=True))
+        for (coefficient, term), value in sorted(valued, key=lambda item: item[0][0] != LIFT):
+            out[coefficient] += value * term.values(known)  # lift first: the drag may need it
         return out
+
+    def check_without_lift(self, consumer: str) -> None:
+        """Raise BadInput where the drag needs the lift coefficient, which `consumer` cannot take."""
+        if self.needs_lift:
+            raise refuse(
+                "lift_in_drag",
+                where=f"aerodynamic model '{self.name}', CD",
+                expected=f"a drag of alpha and the controls for {consumer}",
+                found=self.formulas["CD"],
+                do="Identify the drag as '1 + alpha + alpha^2' for this export.",
+            )
+
+    @property
+    def needs_lift(self) -> bool:
+        """Whether the drag's terms use the lift coefficient."""
+        return any(term.needs_lift for _, term in self.terms)
 
 
 def aero_model(
@@ -137,6 +155,8 @@ def aero_model(
     terms = tuple(
         (c, term) for c in AXES[axes] if c in formulas for term in parse(formulas[c], tables)
     )
+    for c, term in terms:
+        check_lift(c, [term], f"{where}, {c}")
     names = [term.name(c) for c, term in terms]
     _check_once(names, where)
     given = list(values)

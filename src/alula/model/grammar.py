@@ -6,7 +6,8 @@
     base    = "1" | variable | ("abs" | "sign") "(" variable ")"
             | "(" variable ("-" | "+") number ")" "+" | table "(" variable { "," variable } ")"
 
-A table is one of the model's, called with its own axes in their order: `cxt(alpha, de)`. A formula
+The drag's formula may name the lift coefficient, `CD = "1 + CL^2"`, whose terms come first then. A
+table is one of the model's, called with its own axes in their order: `cxt(alpha, de)`. A formula
 names terms only; their values are what identification finds, so there are no factors other than 1
 and no minus signs between terms. Read by a parser of its own, never by `eval`.
 """
@@ -15,7 +16,7 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -24,7 +25,7 @@ import numpy as np
 from alula.base.arrays import Array
 from alula.base.messages import BadInput, refuse
 from alula.model.lookup import LookupTable
-from alula.model.terms import VARIABLES, Factor, Term, product
+from alula.model.terms import LIFT, VARIABLES, Factor, Term, product
 
 _TOKEN = re.compile(
     r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[A-Za-z_]\w*)|(?P<sign>\*\*|.))",
@@ -176,7 +177,7 @@ class _Parser:
         return self.known(self.take())
 
     def known(self, token: _Token) -> str:
-        if token.text in VARIABLES:
+        if token.text in VARIABLES or token.text == LIFT:
             return token.text
         names = (*VARIABLES, *self.tables)
         near = difflib.get_close_matches(token.text, names, n=1)
@@ -204,6 +205,19 @@ def parse(formula: str, tables: Mapping[str, LookupTable] | None = None) -> tupl
     return _Parser(formula, tables or {}).sum()
 
 
+def check_lift(coefficient: str, terms: Iterable[Term], where: str) -> None:
+    """Raise BadInput where a formula other than the drag's names the lift coefficient."""
+    bad = None if coefficient == "CD" else next((t for t in terms if t.needs_lift), None)
+    if bad is not None:
+        raise refuse(
+            "unknown_term",
+            where=where,
+            expected=f"'{LIFT}' in the formula of CD only",
+            found=f"'{bad.formula}' in that of {coefficient}",
+            do=f"Use one of {', '.join(VARIABLES)}.",
+        )
+
+
 def regressors(
     coefficient: str, formula: str, variables: Mapping[str, Array]
 ) -> tuple[tuple[str, ...], Array]:
@@ -213,6 +227,7 @@ def regressors(
     variable that is missing.
     """
     terms = parse(formula)
+    check_lift(coefficient, terms, f"model of {coefficient}")
     if not variables:
         raise refuse(
             "missing_variable",

@@ -11,7 +11,7 @@ import numpy as np
 
 from alula.base.arrays import Array, frozen
 from alula.base.messages import BadInput, refuse
-from alula.model.variables import SHORT, VARIABLES
+from alula.model.variables import LIFT, SHORT, VARIABLES
 
 Interpolation = Literal["linear", "cubic"]
 Outside = Literal["hold", "line"]
@@ -19,7 +19,7 @@ Outside = Literal["hold", "line"]
 MAX_AXES = 3
 MAX_BREAKPOINTS = 1000  # of one axis
 MAX_VALUES = 100_000  # of one table; the F-16's largest has 84
-_RESERVED = {"abs", "sign", *VARIABLES, *SHORT.values()}
+_RESERVED = {"abs", "sign", LIFT, *VARIABLES, *SHORT.values()}
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,11 +12,11 @@ from alula.base.messages import refuse
 from alula.core import core
 from alula.model.aero_model import AXES, AeroModel
 from alula.model.lookup import LookupTable
-from alula.model.terms import VARIABLES, Factor
+from alula.model.terms import LIFT, VARIABLES, Factor
 
 MAX_STEPS = 64  # core/include/alula/aero/term_table.hpp
 MAX_TERMS = 64  # core/include/alula/math/capacity.hpp
-_MULTIPLY, _ABSOLUTE, _RAMP, _SIGN, _LOOKUP = 0, 1, 2, 3, 4
+_MULTIPLY, _ABSOLUTE, _RAMP, _SIGN, _LOOKUP, _LIFT = 0, 1, 2, 3, 4, 5
 _Step = tuple[float, float, float, float, float, float]  # operation, a, b, knot, c, table
 
 
@@ -38,7 +38,10 @@ class _Slots:
         return self.slot_of[key]
 
     def factor(self, factor: Factor) -> int:
-        slots = [1 + VARIABLES.index(name) for name in factor.variables]
+        slots = [
+            self.step(_LIFT, 0) if name == LIFT else 1 + VARIABLES.index(name)
+            for name in factor.variables
+        ]
         slot = slots[0]
         if factor.lookup is not None:
             self.tables.setdefault(factor.table, factor.lookup)
@@ -70,6 +73,9 @@ def to_table(model: AeroModel) -> Any:
     """
     slots = _Slots()
     places = AXES[model.axes]
+    for c, term in model.terms:
+        if c == LIFT:  # its products go before the step that takes it up
+            slots.product(term.factors)
     terms = [(places.index(c), slots.product(term.factors)) for c, term in model.terms]
     if len(terms) > MAX_TERMS or len(slots.steps) > MAX_STEPS:
         raise refuse(
@@ -102,7 +108,8 @@ def evaluate_in_core(model: AeroModel, variables: Mapping[str, Array]) -> dict[s
     """
     for _, term in model.terms:
         for factor in term.factors:
-            factor.values(variables)  # refuses what is missing
+            if factor.variable != LIFT:
+                factor.values(variables)  # refuses what is missing
     rows = np.zeros((len(next(iter(variables.values()))), 1 + len(VARIABLES)))
     rows[:, 0] = 1.0
     for j, name in enumerate(VARIABLES, start=1):

@@ -18,11 +18,12 @@ import numpy as np
 from alula.base.arrays import Array
 from alula.base.messages import refuse
 from alula.model.lookup import LookupTable
-from alula.model.variables import COEFFICIENTS, SHORT, VARIABLES
+from alula.model.variables import COEFFICIENTS, LIFT, SHORT, VARIABLES
 
-__all__ = ["COEFFICIENTS", "VARIABLES", "Factor", "Kind", "Term", "product"]
+__all__ = ["COEFFICIENTS", "LIFT", "VARIABLES", "Factor", "Kind", "Term", "product"]
 
 Kind = Literal["plain", "abs", "sign", "ramp", "table"]
+_ORDER = (*VARIABLES, LIFT)
 _KIND_ORDER: dict[Kind, int] = {"plain": 0, "abs": 1, "ramp": 2, "sign": 3, "table": 4}
 
 
@@ -119,6 +120,11 @@ class Term:
     reference_scale: float | None = None
 
     @property
+    def needs_lift(self) -> bool:
+        """Whether the lift coefficient is one of its factors."""
+        return any(f.variable == LIFT for f in self.factors)
+
+    @property
     def label(self) -> str:
         """The term as it stands behind the coefficient in a parameter's name."""
         return "_".join(f.label for f in self.factors) or "0"
@@ -150,7 +156,7 @@ def product(factors: list[Factor], reference_scale: float | None = None) -> Term
 
     def place(f: Factor) -> tuple[bool, int, int, float, str]:
         kind = _KIND_ORDER[f.kind]
-        return (f.kind == "table", VARIABLES.index(f.variable), kind, f.knot, f.table)
+        return (f.kind == "table", _ORDER.index(f.variable), kind, f.knot, f.table)
 
     joined = tuple(replace(f, power=powers[f]) for f in sorted(powers, key=place))
     return Term(joined, reference_scale)

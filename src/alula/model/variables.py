@@ -7,5 +7,7 @@ from __future__ import annotations
 VARIABLES = (
     "V", "alpha", "beta", "phat", "qhat", "rhat", "de", "da", "dr", "df", "dt", "mach",
 )  # fmt: skip
+# Beside them the lift coefficient, in the drag's formula only: CD = "1 + CL^2".
+LIFT = "CL"
 COEFFICIENTS = ("CX", "CY", "CZ", "Cl", "Cm", "Cn", "CD", "CL")
 SHORT = {"phat": "p", "qhat": "q", "rhat": "r"}  # as they stand in a parameter's name

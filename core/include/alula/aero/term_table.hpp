@@ -1,6 +1,7 @@
 #pragma once
 // An aerodynamic model as a table: steps make products, absolute values, ramps, signs and looked-up
 // values out of the base variables; terms add a value times one of these slots to a coefficient.
+// In stability axes a step may take up the lift coefficient, for a drag of CD0 + K CL^2.
 // Text is parsed to it outside the core; the same bytes serve host and target, and exporters walk
 // them. Lookup tables are named by their number; their data lie beside the table, with the caller.
 #include <array>
@@ -41,7 +42,9 @@ enum class Operation : std::uint8_t {
   ramp,      // slot a less the knot, where that is positive; else zero
   sign,      // -1, 0 or 1 by the sign of slot a
   lookup,    // lookup table number `table` at slots a, b, c; axes it does not have: slot 0
+  lift,      // the lift coefficient; all of its terms have slots before this step
 };
+inline constexpr int kLift = 2, kDrag = 0;  // places of the coefficients in stability axes
 
 struct Step {
   double knot;
@@ -69,7 +72,12 @@ constexpr bool well_formed(const TermTable& table, int table_count = 0) {
     const Step& step = table.steps[static_cast<unsigned>(i)];
     const int own = kVariables + i;
     if (step.a >= own || step.b >= own || step.c >= own) return false;
-    if (step.operation > Operation::lookup) return false;
+    if (step.operation > Operation::lift) return false;
+    if (step.operation == Operation::lift)
+      for (int k = 0; k < table.term_count; ++k) {
+        const Term& term = table.terms[static_cast<unsigned>(k)];
+        if (term.coefficient == kLift && term.slot >= own) return false;
+      }
     if (step.operation == Operation::lookup && step.table >= table_count) return false;
   }
   for (int k = 0; k < table.term_count; ++k) {
@@ -80,10 +88,31 @@ constexpr bool well_formed(const TermTable& table, int table_count = 0) {
   return true;
 }
 
+// One coefficient: the terms that belong to it, at slots that are filled as far as they need.
+template <class S, class T>
+constexpr S coefficient(const TermTable& table, const T* values, const S* slots, int which) {
+  S sum(0);
+  for (int k = 0; k < table.term_count; ++k) {
+    const Term& term = table.terms[static_cast<unsigned>(k)];
+    if (term.coefficient == which) sum += values[k] * slots[term.slot];
+  }
+  return sum;
+}
+
+// Stands for the lift coefficient in a table that has no step of it.
+struct NoLift {
+  template <class S>
+  constexpr S operator()(const S*) const {
+    return S(0);
+  }
+};
+
 // Fills the slots behind the base variables, which the caller has put into the first places.
-// tables: the lookup tables that the steps name.
-template <class S, class T = double>
-constexpr void fill_slots(const TermTable& table, S* slots, const Lookup<T>* tables = nullptr) {
+// tables: the lookup tables that the steps name. lift(slots): the lift coefficient, which is called
+// for where a step needs it.
+template <class S, class T = double, class Lift = NoLift>
+constexpr void fill_slots(const TermTable& table, S* slots, const Lookup<T>* tables = nullptr,
+                          Lift&& lift = {}) {
   for (int i = 0; i < table.step_count; ++i) {
     const Step& step = table.steps[static_cast<unsigned>(i)];
     const S& a = slots[step.a];
@@ -96,6 +125,7 @@ constexpr void fill_slots(const TermTable& table, S* slots, const Lookup<T>* tab
       case Operation::lookup:
         out = lookup(tables[step.table], a, slots[step.b], slots[step.c]);
         break;
+      case Operation::lift: out = lift(static_cast<const S*>(slots)); break;
     }
   }
 }

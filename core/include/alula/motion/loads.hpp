@@ -83,7 +83,8 @@ void add_aerodynamics(const FlightState<S>& x, const FlightInput<S>& u, const Ai
   slots[kRhat] = w.z * span;
   for (int i = 0; i < kControls; ++i) slots[kDe + i] = control(x, u, a, i);
   slots[kMach] = out.mach;
-  fill_slots(a.table, slots, a.lookups);
+  fill_slots(a.table, slots, a.lookups,
+             [&](const S* s) { return coefficient(a.table, a.values.data(), s, kLift); });
   auto& C = out.coefficients;
   C = a.rows.rows > 0 ? coefficients(a.rows, slots) : coefficients(a.table, a.values.data(), slots);
 

@@ -1,0 +1,307 @@
+"""The methods of identification by name: what each needs of a task, and which options it takes.
+
+One method: one file in identify/ and one entry in `IDENTIFIERS`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from alula.base.messages import BadInput, Message, note, refuse
+from alula.campaign.options import Kind, checked_options, factors, priors_of
+from alula.identify import CoefficientData, Identification, Reference, identify_equation_error
+from alula.identify.bootstrap import BLOCK_OPTIONS, bootstrapped
+from alula.identify.frequency_regression import identify_frequency_regression
+from alula.identify.measured_maneuver import MeasuredManeuver
+from alula.identify.merge import merged
+from alula.identify.output_error import identify_output_error
+from alula.identify.output_error_problem import STATE_SETS
+from alula.identify.quality import se_words
+from alula.identify.regression_choice import OPTIONS as REGRESSION
+from alula.identify.regression_choice import regression_choice
+from alula.identify.task import LONGITUDINAL
+
+Measured = tuple[tuple[MeasuredManeuver, ...], tuple[Message, ...]]
+
+
+@dataclass(frozen=True)
+class IdentifyTask:
+    """All that a method may ask for.
+
+    data: coefficients of each maneuver. measure: readings of each maneuver, made when they are
+    wanted. models: formula by coefficient. reference: of the aircraft. seed: of what is random.
+    """
+
+    data: tuple[CoefficientData, ...]
+    measure: Callable[[], Measured]
+    models: Mapping[str, str]
+    reference: Reference
+    options: Mapping[str, Any] = field(default_factory=dict)
+    truth: Mapping[str, float] | None = None
+    seed: int = 0
+
+
+@dataclass(frozen=True)
+class Method:
+    """words: what it is called. options: kind of value by name. run: on a task of such options."""
+
+    words: str
+    options: Mapping[str, Kind]
+    run: Callable[[IdentifyTask], Identification]
+
+
+def identify_by(name: str, task: IdentifyTask) -> Identification:
+    """Identify by the method of that name.
+
+    An option of another method is left aside, with a note: a project serves several. Raises
+    BadInput for a method or an option that nobody knows, or a value that does not fit.
+    """
+    method = IDENTIFIERS[method_name(name)]
+    every = {option for other in IDENTIFIERS.values() for option in other.options}
+    strange = sorted(task.options.keys() - every)
+    if strange:
+        raise refuse(
+            "unknown_option",
+            where="[identify.options]",
+            expected="only " + ", ".join(sorted(method.options)),
+            found=", ".join(strange),
+            do="Take the entry out.",
+        )
+    aside = sorted(task.options.keys() - method.options.keys())
+    given = {k: v for k, v in task.options.items() if k in method.options}
+    result = method.run(replace(task, options=checked_options(given, method.options)))
+    if not aside:
+        return result
+    said = note(
+        "option_of_another_method",
+        where="[identify.options]",
+        expected=f"options of {method.words}",
+        found=", ".join(aside),
+        do="Nothing: they are for other methods and left aside here.",
+    )
+    return replace(result, messages=(*result.messages, said))
+
+
+def method_name(name: str) -> str:
+    """The name, if there is such a method; else raises BadInput."""
+    if name in IDENTIFIERS:
+        return name
+    raise refuse(
+        "unknown_method",
+        where="identify.method",
+        expected="one of " + ", ".join(IDENTIFIERS),
+        found=f"'{name}'",
+        do="Choose one of these.",
+    )
+
+
+def _equation_error(task: IdentifyTask) -> Identification:
+    own = {k: v for k, v in task.options.items() if k in ("weighting", "common_constant", "scales")}
+    choice = regression_choice({k: v for k, v in task.options.items() if k in REGRESSION})
+    kind = task.options.get("uncertainty", "coloured")
+    _one_of("uncertainty", kind, ("coloured", "bootstrap"))
+    blocks = {k: v for k, v in task.options.items() if k in BLOCK_OPTIONS}
+    result = identify_equation_error(
+        task.data, task.models, **own, regression=choice, truth=task.truth
+    )
+    if kind == "coloured":
+        return result
+    return bootstrapped(result, task.data, **own, **blocks, seed=task.seed)
+
+
+def _frequency(task: IdentifyTask) -> Identification:
+    options = dict(task.options)
+    if "band_hz" in options:
+        options["band_hz"] = tuple(options["band_hz"])
+    _one_of("detrend", options.get("detrend", "line"), ("ends", "mean", "line", "none"))
+    result = identify_frequency_regression(task.data, task.models, **options, truth=task.truth)
+    return replace(result, uncertainty=se_words("ordinates of unequal variance", task.data))
+
+
+# Which readings tell of which motion, where the project does not choose.
+OUTPUTS: Mapping[str, tuple[str, ...]] = {
+    "longitudinal": ("V", "alpha", "theta", "q", "ax", "az"),
+    "lateral": ("beta", "p", "r", "phi", "ay"),
+    "six": ("V", "alpha", "beta", "p", "q", "r", "phi", "theta", "ax", "ay", "az"),
+}
+LATERAL_OUTPUTS = frozenset({"beta", "p", "r", "phi", "ay", "pdot", "rdot"})
+
+
+def _output_error(task: IdentifyTask) -> Identification:
+    """Longitudinal and lateral models each on the maneuvers of their aspect, or all together."""
+    options = dict(task.options)
+    states = options.pop("states", "auto")
+    asked = options.pop("outputs", None)
+    if isinstance(states, str):
+        _one_of("states", states, ("auto", *STATE_SETS))
+    if "algorithm" in options:
+        _one_of("algorithm", options["algorithm"], ("gauss_newton", "levenberg_marquardt"))
+    options |= {k: f(options[k]) for k, f in (("tied", factors), ("priors", priors_of))
+                if k in options}  # fmt: skip
+    if "bounds" in options:
+        options["bounds"] = {k: tuple(v) for k, v in options["bounds"].items()}
+    _one_of("initial", options.get("initial", "estimate"), ("estimate", "measured"))
+    if "substeps" in options:
+        if options["substeps"] not in range(1, 101):
+            raise _bad("substeps", "a whole number from 1 to 100", repr(options["substeps"]))
+        options["substeps"] = int(options["substeps"])
+    maneuvers, messages = task.measure()
+    results = []
+    parts = _parts(task.models) if states == "auto" else [(_set_of(states), dict(task.models))]
+    for name, models in parts:
+        serving = _serving(maneuvers, models)
+        outputs = _outputs(name, states, asked, serving)
+        results.append(
+            identify_output_error(
+                serving,
+                models,
+                states=name if states == "auto" else states,
+                outputs=outputs,
+                **_of_part(options, models, outputs, alone=len(parts) == 1),
+                truth=task.truth,
+            )
+        )
+    result = merged(results)
+    return replace(result, messages=(*messages, *result.messages))
+
+
+def _parts(models: Mapping[str, str]) -> list[tuple[str, dict[str, str]]]:
+    """Models by the motion that they belong to."""
+    long = {c: f for c, f in models.items() if c in LONGITUDINAL}
+    lateral = {c: f for c, f in models.items() if c not in LONGITUDINAL}
+    return [(name, part) for name, part in (("longitudinal", long), ("lateral", lateral)) if part]
+
+
+def _set_of(states: str | Sequence[str]) -> str:
+    if isinstance(states, str):
+        return states
+    chosen = set(states)
+    fits = [name for name, every in STATE_SETS.items() if chosen <= set(every)]
+    return fits[0] if fits else "six"
+
+
+def _serving(
+    maneuvers: Sequence[MeasuredManeuver], models: Mapping[str, str]
+) -> list[MeasuredManeuver]:
+    """The maneuvers of the models' aspect; all where models of both are flown together."""
+    aspects = {"longitudinal" if c in LONGITUDINAL else "lateral" for c in models}
+    if len(aspects) > 1:
+        return list(maneuvers)
+    found = [m for m in maneuvers if m.maneuver.aspect in (*aspects, "both")]
+    if not any(not m.maneuver.held_out for m in found):
+        (aspect,) = aspects
+        raise refuse(
+            "no_maneuver",
+            where="model of " + ", ".join(models),
+            expected=f"a {aspect} maneuver (or 'both') that is not held out",
+            found=", ".join(f"{m.maneuver.id} ({m.maneuver.aspect})" for m in maneuvers) or "none",
+            do="Set a maneuver's aspect or held_out, or take the model out.",
+        )
+    return found
+
+
+def _outputs(
+    name: str,
+    states: str | Sequence[str],
+    asked: Sequence[str] | None,
+    maneuvers: Sequence[MeasuredManeuver],
+) -> list[str]:
+    """Those asked for, of this part; else the usual ones that every maneuver has readings of."""
+    if asked is not None:
+        if states != "auto":
+            return list(asked)
+        return [n for n in asked if (n in LATERAL_OUTPUTS) == (name == "lateral")]
+    found = [n for n in OUTPUTS[name] if all(n in m.outputs for m in maneuvers)]
+    if not found:
+        raise refuse(
+            "no_output",
+            where=f"output error, {name}",
+            expected="readings of " + ", ".join(OUTPUTS[name]),
+            found="none that every maneuver has",
+            do="Map their channels.",
+        )
+    return found
+
+
+def _of_part(
+    options: Mapping[str, Any], models: Mapping[str, str], outputs: Collection[str], alone: bool
+) -> dict[str, Any]:
+    """The options that belong to one part of the models, where there are two."""
+    if alone:
+        return dict(options)
+
+    def mine(name: str) -> bool:
+        head = name.removeprefix("b_").split("[")[0].split("(")[0]
+        return head in outputs or head in STATE_NAMES & set(outputs) or head.split("_")[0] in models
+
+    out = dict(options)
+    for key in ("start", "fixed", "tied", "bounds", "priors", "stabilize", "noise"):
+        if key in out:
+            out[key] = {n: v for n, v in out[key].items() if mine(n)}
+    if not out.get("noise", True):
+        del out["noise"]
+    if "biases" in out:
+        out["biases"] = [n for n in out["biases"] if n in outputs]
+    return out
+
+
+STATE_NAMES = frozenset(STATE_SETS["six"])
+
+
+def _one_of(name: str, value: str, known: Sequence[str]) -> None:
+    if value not in known:
+        raise _bad(name, "one of " + ", ".join(known), repr(value))
+
+
+def _bad(name: str, expected: str, found: str) -> BadInput:
+    return refuse(
+        "bad_option",
+        where=f"identify.options.{name}",
+        expected=expected,
+        found=found,
+        do="Correct it.",
+    )
+
+
+IDENTIFIERS: Mapping[str, Method] = {
+    "ee": Method(
+        "equation error",
+        {
+            "weighting": "text",
+            "common_constant": "flag",
+            "scales": "numbers",
+            "uncertainty": "text",
+            **dict.fromkeys(REGRESSION, "any"),  # looked at by regression_choice
+            **dict.fromkeys(BLOCK_OPTIONS, "number"),
+        },
+        _equation_error,
+    ),
+    "oe": Method(
+        "output error",
+        {
+            "states": "names",
+            "outputs": "list",
+            "start": "numbers",
+            "fixed": "numbers",
+            "tied": "texts",
+            "bounds": "pairs",
+            "priors": "pairs",
+            "initial": "text",
+            "biases": "list",
+            "common_constant": "flag",
+            "stabilize": "numbers",
+            "noise": "numbers",
+            "algorithm": "text",
+            "substeps": "number",
+            "scales": "numbers",
+        },
+        _output_error,
+    ),
+    "fd": Method(
+        "frequency-domain regression",
+        {"band_hz": "pair", "detrend": "text", "weighting": "text", "scales": "numbers"},
+        _frequency,
+    ),
+}

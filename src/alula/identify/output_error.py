@@ -1,0 +1,381 @@
+"""Output error: the parameters with which the flown motion comes closest to the measured one.
+
+Maximum likelihood where sensors are noisy and the air is still (Dittrich 2016, Eq. (3.49) to
+(3.65); Jategaonkar, Flight Vehicle System Identification, 2nd ed. 2015, ch. 4; Klein and Morelli,
+Aircraft System Identification, 2nd ed. 2016, ch. 6). The nonlinear equations of motion are flown in
+the core with any formula of the model grammar; sensitivities are variational. The covariance of the
+noise is diagonal and estimated along, R = mean of e e' (Eq. (3.51)), which turns the cost into the
+sum of N/2 ln r_i.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal, Protocol
+
+import numpy as np
+
+from alula.base.arrays import Array
+from alula.base.messages import Message, note, refuse
+from alula.identify.control_sign import signs_checked
+from alula.identify.feedback import Feedback, distrusted, feedback, warn_of_feedback
+from alula.identify.likelihood import Fitted, Prior, Whitened, assembled
+from alula.identify.linear_output_error import prior_blocks
+from alula.identify.measured_maneuver import MeasuredManeuver
+from alula.identify.optimizer import Algorithm, Minimum, Point, minimize, with_prior
+from alula.identify.output_error_problem import STATE_SETS, FlightProblem, Setting, Sums
+from alula.identify.output_error_start import regressor_variables, start_values
+from alula.identify.result import Identification
+from alula.identify.saturation import without_saturated
+from alula.identify.typical import unit
+from alula.model import AeroModel, Reference, aero_model, parse, reference_scales
+
+SMALLEST = 1e-24  # of an output's variance over its mean square: below it is rounding
+PULL = 2.0  # 1/s, of a first search where the start values diverge
+StateSet = Literal["longitudinal", "lateral", "six"]
+# Standard errors (m/s; rad, rad/s) at which an initial state is resolved, whatever its value.
+ENOUGH = {"V": 0.5}
+_UNITS = {"V": "m/s", "ax": "m/s2", "ay": "m/s2", "az": "m/s2", "p": "rad/s", "q": "rad/s"}
+_UNITS |= {"r": "rad/s", "pdot": "rad/s2", "qdot": "rad/s2", "rdot": "rad/s2"}
+
+
+class Problem(Protocol):
+    """What the search needs: names, first values, sums, flights with slopes."""
+
+    @property
+    def names(self) -> list[str]:
+        """(k,) names of the parameters."""
+        ...
+
+    @property
+    def readings(self) -> Sequence[Array]:
+        """(n, m) of each maneuver, NaN where a sensor says nothing."""
+        ...
+
+    def evaluate(self, theta: Array) -> Sums:
+        """The sums at the parameters (k,)."""
+        ...
+
+    def flight(self, theta: Array, i: int) -> tuple[Array, Array]:
+        """Outputs (n, m) of maneuver i and slopes (n, m, k)."""
+        ...
+
+
+class OutputErrorLikelihood:
+    """The likelihood of a problem's outputs. variance: (m,) where the noise is known."""
+
+    def __init__(self, problem: Problem, variance: Array | None = None) -> None:
+        self.problem, self.known = problem, variance
+        squares = [np.nanmean(r**2, axis=0) for r in problem.readings]
+        self.least = np.maximum(SMALLEST * np.mean(squares, axis=0), 1e-300)
+        self._at: tuple[Array, Point | None] | None = None
+
+    def __call__(self, theta: Array, derivatives: bool) -> Point | None:
+        """Cost, gradient and information; one flight gives them all, so it is kept."""
+        if self._at is None or not np.array_equal(self._at[0], theta):
+            self._at = theta.copy(), self._point(theta)
+        return self._at[1]
+
+    def variance(self, sums: Sums) -> Array:
+        """(m,) R of every output."""
+        if self.known is not None:
+            return self.known
+        return np.maximum(sums.squares / np.maximum(sums.counts, 1), self.least)
+
+    def _point(self, theta: Array) -> Point | None:
+        sums = self.problem.evaluate(theta)
+        if not sums.finite:
+            return None
+        r = self.variance(sums)
+        if self.known is None:
+            cost = 0.5 * float(sums.counts @ np.log(r))
+        else:
+            cost = 0.5 * float(np.sum(sums.squares / r))
+        information = np.tensordot(1.0 / r, sums.information, 1)
+        return Point(cost, -(1.0 / r) @ sums.gradient, information)
+
+
+@dataclass(frozen=True)
+class OutputErrorFit:
+    """A finished search: the problem, its likelihood, where it ended."""
+
+    problem: FlightProblem
+    likelihood: OutputErrorLikelihood
+    found: Minimum
+    messages: tuple[Message, ...] = ()
+
+    @property
+    def params(self) -> dict[str, float]:
+        """The values by parameter name."""
+        return dict(zip(self.problem.names, self.found.value.tolist(), strict=True))
+
+
+def fit_output_error(
+    maneuvers: Sequence[MeasuredManeuver],
+    model: AeroModel,
+    setting: Setting,
+    *,
+    noise: Mapping[str, float] | None = None,
+    bounds: Mapping[str, tuple[float, float]] | None = None,
+    priors: Mapping[str, Prior] | None = None,
+    algorithm: Algorithm = "gauss_newton",
+) -> OutputErrorFit:
+    """The search alone, without error bars for coloured residuals and verdicts.
+
+    model: its values are the start. noise: standard deviation of every output where it is known.
+    bounds, priors: by parameter name; of initial states and biases too, 'alpha(0)[id]'.
+    """
+    problem = FlightProblem(maneuvers, model, setting)
+    known = None
+    if noise is not None:
+        _check_names("noise", noise, setting.outputs, setting.outputs)
+        known = np.array([noise[name] for name in setting.outputs]) ** 2
+    likelihood = OutputErrorLikelihood(problem, known)
+    found = _search(likelihood, problem, problem.start, bounds or {}, priors or {}, algorithm)
+    said: tuple[Message, ...] = ()
+    if not found.converged and found.iterations == 0 and not setting.stabilize:
+        pull = {name: PULL for name in setting.states if name in setting.outputs}
+        held = FlightProblem(maneuvers, model, replace(setting, stabilize=pull))
+        first = _search(
+            OutputErrorLikelihood(held, known), held, held.start, bounds or {}, priors or {},
+            algorithm,
+        )  # fmt: skip
+        found = _search(likelihood, problem, first.value, bounds or {}, priors or {}, algorithm)
+        said = (
+            note(
+                "start_diverges",
+                where="output error",
+                expected="a motion that can be flown with the first values",
+                found=f"one that diverges; a first search pulled the states to their measurements "
+                f"({PULL:g}/s)",
+                do="Nothing where the search then converged; else give start values.",
+            ),
+        )
+    return OutputErrorFit(problem, likelihood, found, said)
+
+
+def identify_output_error(
+    maneuvers: Sequence[MeasuredManeuver],
+    models: Mapping[str, str],
+    *,
+    states: StateSet | Sequence[str] = "longitudinal",
+    outputs: Sequence[str],
+    start: Mapping[str, float] | None = None,
+    fixed: Mapping[str, float] | None = None,
+    tied: Mapping[str, tuple[str, float]] | None = None,
+    bounds: Mapping[str, tuple[float, float]] | None = None,
+    priors: Mapping[str, Prior] | None = None,
+    initial: str = "estimate",
+    biases: Sequence[str] = (),
+    common_constant: bool = True,
+    stabilize: Mapping[str, float] | None = None,
+    noise: Mapping[str, float] | None = None,
+    algorithm: Algorithm = "gauss_newton",
+    substeps: int = 1,
+    scales: Mapping[str, float] | None = None,
+    truth: Mapping[str, float] | None = None,
+) -> Identification:
+    """Derivatives from outputs, over all maneuvers at once.
+
+    models: formula by coefficient; CD or CL among them: stability axes, CD may name CL. states: of
+    V alpha beta p q r phi theta, or 'longitudinal' (V alpha theta q), 'lateral' (beta p r phi),
+    'six' (all); what is not a state is taken as measured. outputs: what is compared. start: values
+    of terms, others by equation error. initial, biases, common_constant, stabilize (1/s by state),
+    substeps: see `Setting`. noise: standard deviations where they are known; else estimated.
+
+    A held-out maneuver is predicted with the derivatives of the others; its initial states, biases
+    and own constants are fitted to itself. Raises BadInput for names that do not exist and for
+    data that lack what the model needs; a search that fails is a result whose status says why.
+    """
+    if not models:
+        raise refuse(
+            "no_model",
+            where="models",
+            expected="a formula for at least one coefficient",
+            found="none",
+            do='State one, e.g. Cm = "1 + alpha + qhat + de".',
+        )
+    whole = [without_saturated(m) for m in maneuvers]
+    maneuvers = [m for m, _ in whole]
+    learn = [m for m in maneuvers if not m.maneuver.held_out]
+    if not learn or len({m.maneuver.id for m in maneuvers}) < len(maneuvers):
+        raise refuse(
+            "no_maneuver",
+            where="output error",
+            expected="at least one maneuver that is not held out, each with its own id",
+            found=", ".join(m.maneuver.id for m in maneuvers) or "none",
+            do="Give one, or take `held_out` away.",
+        )
+    setting = Setting(
+        states=STATE_SETS[states] if isinstance(states, str) else tuple(states),
+        outputs=tuple(outputs),
+        fixed=fixed or {},
+        tied=tied or {},
+        initial=initial,
+        biases=tuple(biases),
+        common_constant=common_constant,
+        stabilize=stabilize or {},
+        substeps=substeps,
+    )
+    values = {**start_values(learn, models, {**(fixed or {}), **(start or {})})}
+    model = _model(models, values, learn[0])
+    fit = fit_output_error(
+        learn, model, setting, noise=noise, bounds=bounds, priors=priors, algorithm=algorithm
+    )
+    problem, found = fit.problem, fit.found
+    said = [*(m for _, messages in whole for m in messages), *fit.messages, *_pulled(setting)]
+    followed: dict[str, tuple[Feedback, ...]] = {}
+    enough = {k: v for c, f in models.items() for k, v in reference_scales(c, f).items()}
+    enough |= {n: ENOUGH.get(n.split("(")[0], 0.01) for n in problem.names if "(0)" in n}
+    fitted, blocks = _at(fit, priors or {})
+    if found.converged:
+        followed = _followed(fit, models)
+        said += [m for c, laws in followed.items() for m in warn_of_feedback(c, laws)]
+        for m in maneuvers:
+            if m.maneuver.held_out:
+                fitted += _predicted(m, fit, model, setting)
+    result = assembled(
+        "output error",
+        problem.names,
+        {name.split("[")[0]: c for name, c in zip(problem.names, problem.belongs, strict=True)},
+        blocks,
+        found,
+        fitted,
+        {},
+        scales={**enough, **(scales or {})},
+        truth=truth,
+        messages=said,
+    )
+    parameters = tuple(replace(p, unit=_unit(p.coefficient, p.name)) for p in result.parameters)
+    if setting.stabilize:
+        parameters = tuple(distrusted(p, followed.get(p.coefficient, ())) for p in parameters)
+    parameters, turned = signs_checked(parameters)
+    return replace(
+        result,
+        parameters=parameters,
+        formulas=dict(models),
+        messages=(*result.messages, *turned),
+        status=result.status + "".join(f"; sign contradicted: {m.where}" for m in turned),
+    )
+
+
+def _search(
+    likelihood: OutputErrorLikelihood,
+    problem: FlightProblem,
+    start: Array,
+    bounds: Mapping[str, tuple[float, float]],
+    priors: Mapping[str, Prior],
+    algorithm: Algorithm,
+) -> Minimum:
+    _check_names("bounds", bounds, problem.names)
+    _check_names("priors", priors, problem.names)
+    low = np.array([bounds.get(n, (-np.inf, np.inf))[0] for n in problem.names])
+    high = np.array([bounds.get(n, (-np.inf, np.inf))[1] for n in problem.names])
+    if not priors:
+        return minimize(likelihood, start, algorithm=algorithm, lower=low, upper=high)
+    mean = np.array([priors[n].mean if n in priors else 0.0 for n in problem.names])
+    weight = np.array([priors[n].se ** -2 if n in priors else 0.0 for n in problem.names])
+    joint = with_prior(likelihood, mean, np.diag(weight))
+    return minimize(joint, start, algorithm=algorithm, lower=low, upper=high)
+
+
+def _at(fit: OutputErrorFit, priors: Mapping[str, Prior]) -> tuple[list[Fitted], list[Whitened]]:
+    """Outputs, and whitened residuals with their slopes, where the search ended."""
+    problem, theta = fit.problem, fit.found.value
+    if not fit.found.converged:
+        return [], []
+    deviation = np.sqrt(fit.likelihood.variance(problem.evaluate(theta)))
+    fitted, blocks = [], []
+    for i, m in enumerate(problem.maneuvers):
+        y, slopes = problem.flight(theta, i)
+        for o, name in enumerate(problem.setting.outputs):
+            measured = m.outputs[name]
+            fitted.append(Fitted(name, m.maneuver.id, m.t, measured, y[:, o], False))
+            good = np.isfinite(measured)
+            if good.any():
+                error = (measured - y[:, o])[good] / deviation[o]
+                blocks.append(Whitened(slopes[good, o] / deviation[o], error))
+    return fitted, blocks + prior_blocks(problem.names, theta, priors)
+
+
+def _predicted(
+    m: MeasuredManeuver, fit: OutputErrorFit, model: AeroModel, setting: Setting
+) -> list[Fitted]:
+    """A held-out maneuver: the derivatives stay, what belongs to the maneuver itself is fitted."""
+    values = fit.problem.model_at(fit.found.value)
+    several = len(fit.problem.maneuvers) > 1 and not setting.common_constant
+    own = [n for n in values if several and n.endswith("_0")]
+    known = {n: v for n, v in values.items() if n not in own and n not in setting.tied}
+    start = replace(model, values=np.array([values[n] for n in model.names]))
+    problem = FlightProblem([m], start, replace(setting, fixed={**setting.fixed, **known}))
+    found = minimize(OutputErrorLikelihood(problem, None), problem.start)
+    y, _ = problem.flight(found.value, 0)
+    return [
+        Fitted(name, m.maneuver.id, m.t, m.outputs[name], y[:, o], True)
+        for o, name in enumerate(setting.outputs)
+    ]
+
+
+def _model(
+    models: Mapping[str, str], values: Mapping[str, float], m: MeasuredManeuver
+) -> AeroModel:
+    axes: Literal["body", "stability"] = "stability" if {"CD", "CL"} & models.keys() else "body"
+    names = {t.name(c) for c, formula in models.items() for t in parse(formula)}
+    reference = Reference(m.reference.S, m.reference.b, m.reference.c)
+    chosen = {n: v for n, v in values.items() if n in names}
+    return aero_model("output error", models, chosen, reference, axes=axes)
+
+
+def _followed(fit: OutputErrorFit, models: Mapping[str, str]) -> dict[str, tuple[Feedback, ...]]:
+    """Controls that follow the states, in the motion as the model flew it: without noise."""
+    variables = []
+    for i, m in enumerate(fit.problem.maneuvers):
+        y, _ = fit.problem.flight(fit.found.value, i)
+        flown = dict(zip(fit.problem.setting.outputs, y.T, strict=True))
+        variables.append(regressor_variables(replace(m, outputs=flown)))
+    out = {}
+    for coefficient, formula in models.items():
+        names = {v for term in parse(formula) for f in term.factors for v in f.variables}
+        out[coefficient] = feedback(variables, sorted(names))
+    return out
+
+
+def _pulled(setting: Setting) -> tuple[Message, ...]:
+    if not setting.stabilize:
+        return ()
+    words = ", ".join(f"{name} {gain:g}/s" for name, gain in setting.stabilize.items())
+    return (
+        note(
+            "stabilized",
+            where="output error",
+            expected="a motion that the inputs alone determine",
+            found=f"states pulled to their measurements: {words}",
+            do="Its noise enters the model there: keep the gains as small as the search allows, "
+            "and compare with filter error.",
+        ),
+    )
+
+
+def _unit(belongs: str, name: str) -> str:
+    if "(0)" in name or name.startswith("b_"):
+        return _UNITS.get(belongs, "rad")
+    return unit(belongs, name)
+
+
+def _check_names(
+    what: str,
+    given: Mapping[str, object],
+    known: Sequence[str],
+    needed: Sequence[str] = (),
+) -> None:
+    bad = [n for n in given if n not in known]
+    missing = [n for n in needed if n not in given]
+    if bad or missing:
+        raise refuse(
+            "unknown_parameter",
+            where=f"output error, {what}",
+            expected=f"{'all of' if needed else 'some of'} {', '.join(known)}",
+            found=f"{', '.join(bad) or 'nothing unknown'}; missing: {', '.join(missing) or 'none'}",
+            do="Correct the names.",
+        )
