@@ -21,6 +21,7 @@ inline alula::Vec3<double> vec3(Vector a, const char* what) {
 }
 
 void bind_path(nb::module_& m);
+void bind_linear_filter(nb::module_& m);
 void bind_processor(nb::module_& m);
 void bind_aero(nb::module_& m);
 void bind_atmosphere(nb::module_& m);

@@ -4,6 +4,7 @@
 NB_MODULE(ALULA_MODULE, m) {
   m.doc() = "Alula's compiled core: kinematics, filters, estimators and equations of motion.";
   bind_path(m);
+  bind_linear_filter(m);
   bind_processor(m);
   bind_aero(m);
   bind_atmosphere(m);

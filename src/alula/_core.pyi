@@ -61,7 +61,17 @@ def path_ekf(model: PathModel, t: Annotated[NDArray[numpy.float64], dict(shape=(
     Filter a record: t (n,), inputs (n, 6), readings (n, sensors) with NaN for none, start (n,)
     the row of `initial` where a maneuver begins and -1 elsewhere, initial (maneuvers, 2 motion)
     values and standard deviations, x0 and sigma0 (states,) the constants' prior. Returns
-    histories; `done` < n where the filter lost its covariance.
+    histories; `done` < n where the filter lost its covariance, `unsettled` updates whose
+    iteration did not converge.
+    """
+
+def path_iekf(model: PathModel, t: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], inputs: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], readings: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], start: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', writable=False)], initial: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], x0: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], sigma0: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], smooth: bool = False, keep_covariance: bool = False) -> dict[str, Any]:
+    """
+    Filter a record: t (n,), inputs (n, 6), readings (n, sensors) with NaN for none, start (n,)
+    the row of `initial` where a maneuver begins and -1 elsewhere, initial (maneuvers, 2 motion)
+    values and standard deviations, x0 and sigma0 (states,) the constants' prior. Returns
+    histories; `done` < n where the filter lost its covariance, `unsettled` updates whose
+    iteration did not converge.
     """
 
 def path_ukf(model: PathModel, t: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], inputs: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], readings: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], start: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', writable=False)], initial: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], x0: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], sigma0: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], smooth: bool = False, keep_covariance: bool = False) -> dict[str, Any]:
@@ -69,7 +79,17 @@ def path_ukf(model: PathModel, t: Annotated[NDArray[numpy.float64], dict(shape=(
     Filter a record: t (n,), inputs (n, 6), readings (n, sensors) with NaN for none, start (n,)
     the row of `initial` where a maneuver begins and -1 elsewhere, initial (maneuvers, 2 motion)
     values and standard deviations, x0 and sigma0 (states,) the constants' prior. Returns
-    histories; `done` < n where the filter lost its covariance.
+    histories; `done` < n where the filter lost its covariance, `unsettled` updates whose
+    iteration did not converge.
+    """
+
+def path_srukf(model: PathModel, t: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], inputs: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], readings: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], start: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', writable=False)], initial: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], x0: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], sigma0: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], smooth: bool = False, keep_covariance: bool = False) -> dict[str, Any]:
+    """
+    Filter a record: t (n,), inputs (n, 6), readings (n, sensors) with NaN for none, start (n,)
+    the row of `initial` where a maneuver begins and -1 elsewhere, initial (maneuvers, 2 motion)
+    values and standard deviations, x0 and sigma0 (states,) the constants' prior. Returns
+    histories; `done` < n where the filter lost its covariance, `unsettled` updates whose
+    iteration did not converge.
     """
 
 def path_readings(model: PathModel, inputs: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], x: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> NDArray[numpy.float64]:
@@ -80,6 +100,12 @@ def path_readings(model: PathModel, inputs: Annotated[NDArray[numpy.float64], di
 def path_open_loop(model: PathModel, t: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], inputs: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], x0: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], held: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)] | None = None, jacobian: bool = True) -> dict[str, Any]:
     """
     Integrate the kinematics from x0 without using a measurement, with exact Jacobians.
+    """
+
+def linear_filter(transition: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], input: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], process: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], output: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], noise: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], u: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], z: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], x0: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], P0: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], smooth: bool = False) -> dict[str, Any]:
+    """
+    Linear Kalman filter over z (samples, outputs), NaN for none, from x0 and P0 before the
+    first reading; process is Lambda Q Lambda'. `done` < samples where it lost its covariance.
     """
 
 def has_x86_64_v3() -> bool:

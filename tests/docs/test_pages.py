@@ -23,7 +23,9 @@ PAGES = sorted(
 # The page of each registered method; a new entry in a registry needs one here.
 METHOD_PAGES = {
     "ekf": "extended_filter.md",
+    "iekf": "iterated_filter.md",
     "ukf": "unscented_filter.md",
+    "srukf": "square_root_filter.md",
     "ml": "maximum_likelihood.md",
     "ee": "equation_error.md",
     "rls": "recursive.md",

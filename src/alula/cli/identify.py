@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from alula.base.filters import FilterName
 from alula.cli.contract import (
     Command,
     JsonOption,
@@ -20,15 +21,6 @@ from alula.cli.contract import (
 
 if TYPE_CHECKING:
     from alula.campaign import Job
-
-
-class Filter(StrEnum):
-    """How the flight path is reconstructed."""
-
-    ekf = "ekf"
-    ukf = "ukf"
-    ml = "ml"
-    none = "none"
 
 
 class Method(StrEnum):
@@ -43,7 +35,7 @@ class Method(StrEnum):
 def identify(
     project: Annotated[Path, typer.Argument(metavar="PROJECT", help="The project file.")],
     method: Annotated[Method | None, typer.Option(help="Instead of the project's.")] = None,
-    filter: Annotated[Filter | None, typer.Option(help="Instead of the project's.")] = None,
+    filter: Annotated[FilterName | None, typer.Option(help="Instead of the project's.")] = None,
     maneuver: Annotated[
         list[str] | None,
         typer.Option(metavar="ID", help="Only this maneuver; may be given several times."),
@@ -78,7 +70,7 @@ def identify(
 
         job = run_project(
             str(project),
-            filter=None if filter is None else filter.value,
+            filter=filter,
             method=None if method is None else method.value,
             only=maneuver or (),
             truth=None if truth is None else _truth(truth),
