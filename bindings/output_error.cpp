@@ -1,11 +1,11 @@
 // Output error: one maneuver with its model, flown for the sums of a Gauss-Newton step.
 #include "alula/estimate/output_error.hpp"
 
-#include <nanobind/stl/optional.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
-#include <optional>
+#include <tuple>
 #include <vector>
 
 #include "arrays.hpp"
@@ -14,6 +14,8 @@
 
 namespace {
 
+using Numbers = nb::ndarray<nb::numpy, double>;
+using Counts = nb::ndarray<nb::numpy, std::int64_t>;
 using Integers = std::vector<int>;
 constexpr auto kLongitudinal = alula::Axes::longitudinal;
 constexpr auto kLateral = alula::Axes::lateral;
@@ -143,7 +145,8 @@ void check(const Maneuver& self, Vector values, Vector initial, Vector bias) {
   require(static_cast<int>(bias.shape(0)) == self.m.outputs, "bias: one per output");
 }
 
-nb::tuple sums(const Maneuver& self, Vector values, Vector initial, Vector bias) {
+std::tuple<int, Numbers, Numbers, Numbers, Counts> sums(const Maneuver& self, Vector values,
+                                                        Vector initial, Vector bias) {
   check(self, values, initial, bias);
   const int ny = self.m.outputs, k = self.m.columns, stride = alula::stride_of(k);
   Array<double> information({ny, k, stride}), gradient({ny, stride}), squares({ny});
@@ -159,12 +162,11 @@ nb::tuple sums(const Maneuver& self, Vector values, Vector initial, Vector bias)
     for (int i = 0; i < k; ++i)
       for (int j = 0; j < i; ++j) full[i * stride + j] = full[j * stride + i];
   }
-  return nb::make_tuple(flown, information.numpy(), gradient.numpy(), squares.numpy(),
-                        counts.numpy());
+  return {flown, information.numpy(), gradient.numpy(), squares.numpy(), counts.numpy()};
 }
 
-nb::tuple flight(const Maneuver& self, Vector values, Vector initial, Vector bias,
-                 bool sensitivity) {
+std::tuple<int, Numbers, Numbers> flight(const Maneuver& self, Vector values, Vector initial,
+                                         Vector bias, bool sensitivity) {
   check(self, values, initial, bias);
   const int n = self.m.samples, ny = self.m.outputs;
   Array<double> y({n, ny}), slopes({sensitivity ? n : 0, ny, self.m.columns});
@@ -172,7 +174,7 @@ nb::tuple flight(const Maneuver& self, Vector values, Vector initial, Vector bia
   s.predicted = y.data();
   if (sensitivity) s.sensitivity = slopes.data();
   const int flown = self.fly(values.data(), initial.data(), bias.data(), s);
-  return nb::make_tuple(flown, y.numpy(), slopes.numpy());
+  return {flown, y.numpy(), slopes.numpy()};
 }
 
 }  // namespace

@@ -32,11 +32,15 @@ class Whitened:
     """One block at the maximum: sensitivities (n, k) and residual (n,), over their deviation.
 
     prior: a prior's row, whose variance is known to be 1 and not to be told from its residual.
+    coloured: (sensitivities (n, k), residual (n,)) whose autocorrelation makes the error bars,
+    where that is not the block's own: of outputs that are whitened together, R^-1 S and the
+    output's own residual (Klein and Morelli 2006, Eq. (6.29) ff.).
     """
 
     sensitivity: Array
     residual: Array
     prior: bool = False
+    coloured: tuple[Array, Array] | None = None
 
 
 @dataclass(frozen=True)
@@ -74,7 +78,7 @@ def regression_at(
     null = solution.null @ (solution.null.T @ (value * solution.scale))
     solution = replace(solution, value=value - null / solution.scale)
     residuals = tuple(b.residual for b in blocks)
-    rows = [(b.sensitivity, np.ones(1) if b.prior else b.residual) for b in blocks]
+    rows = [b.coloured or (b.sensitivity, np.ones(1) if b.prior else b.residual) for b in blocks]
     if ordinates:
         rows = [(x, v) if len(v) > 1 else (np.vstack([x, 0.0 * x]), np.ones(2)) for x, v in rows]
         coloured = sandwich(rows, solution.dispersion)

@@ -11,8 +11,8 @@ sum of N/2 ln r_i.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Literal, Protocol
+from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 
@@ -20,139 +20,24 @@ from alula.base.arrays import Array
 from alula.base.messages import Message, note, refuse
 from alula.identify.control_sign import signs_checked
 from alula.identify.feedback import Feedback, distrusted, feedback, warn_of_feedback
-from alula.identify.likelihood import Fitted, Prior, Whitened, assembled
+from alula.identify.likelihood import Fitted, Prior, assembled
 from alula.identify.linear_output_error import prior_blocks
 from alula.identify.measured_maneuver import MeasuredManeuver
-from alula.identify.optimizer import Algorithm, Minimum, Point, minimize, with_prior
-from alula.identify.output_error_problem import STATE_SETS, FlightProblem, Setting, Sums
+from alula.identify.optimizer import Algorithm, minimize
+from alula.identify.output_error_fit import Covariance, OutputErrorFit, fit_output_error
+from alula.identify.output_error_likelihood import likelihood_of
+from alula.identify.output_error_problem import STATE_SETS, FlightProblem, Setting
 from alula.identify.output_error_start import regressor_variables, start_values
 from alula.identify.result import Identification
 from alula.identify.saturation import without_saturated
 from alula.identify.typical import unit
 from alula.model import AeroModel, Reference, aero_model, parse, reference_scales
 
-SMALLEST = 1e-24  # of an output's variance over its mean square: below it is rounding
-PULL = 2.0  # 1/s, of a first search where the start values diverge
 StateSet = Literal["longitudinal", "lateral", "six"]
 # Standard errors (m/s; rad, rad/s) at which an initial state is resolved, whatever its value.
 ENOUGH = {"V": 0.5}
 _UNITS = {"V": "m/s", "ax": "m/s2", "ay": "m/s2", "az": "m/s2", "p": "rad/s", "q": "rad/s"}
 _UNITS |= {"r": "rad/s", "pdot": "rad/s2", "qdot": "rad/s2", "rdot": "rad/s2"}
-
-
-class Problem(Protocol):
-    """What the search needs: names, first values, sums, flights with slopes."""
-
-    @property
-    def names(self) -> list[str]:
-        """(k,) names of the parameters."""
-        ...
-
-    @property
-    def readings(self) -> Sequence[Array]:
-        """(n, m) of each maneuver, NaN where a sensor says nothing."""
-        ...
-
-    def evaluate(self, theta: Array) -> Sums:
-        """The sums at the parameters (k,)."""
-        ...
-
-    def flight(self, theta: Array, i: int) -> tuple[Array, Array]:
-        """Outputs (n, m) of maneuver i and slopes (n, m, k)."""
-        ...
-
-
-class OutputErrorLikelihood:
-    """The likelihood of a problem's outputs. variance: (m,) where the noise is known."""
-
-    def __init__(self, problem: Problem, variance: Array | None = None) -> None:
-        self.problem, self.known = problem, variance
-        squares = [np.nanmean(r**2, axis=0) for r in problem.readings]
-        self.least = np.maximum(SMALLEST * np.mean(squares, axis=0), 1e-300)
-        self._at: tuple[Array, Point | None] | None = None
-
-    def __call__(self, theta: Array, derivatives: bool) -> Point | None:
-        """Cost, gradient and information; one flight gives them all, so it is kept."""
-        if self._at is None or not np.array_equal(self._at[0], theta):
-            self._at = theta.copy(), self._point(theta)
-        return self._at[1]
-
-    def variance(self, sums: Sums) -> Array:
-        """(m,) R of every output."""
-        if self.known is not None:
-            return self.known
-        return np.maximum(sums.squares / np.maximum(sums.counts, 1), self.least)
-
-    def _point(self, theta: Array) -> Point | None:
-        sums = self.problem.evaluate(theta)
-        if not sums.finite:
-            return None
-        r = self.variance(sums)
-        if self.known is None:
-            cost = 0.5 * float(sums.counts @ np.log(r))
-        else:
-            cost = 0.5 * float(np.sum(sums.squares / r))
-        information = np.tensordot(1.0 / r, sums.information, 1)
-        return Point(cost, -(1.0 / r) @ sums.gradient, information)
-
-
-@dataclass(frozen=True)
-class OutputErrorFit:
-    """A finished search: the problem, its likelihood, where it ended."""
-
-    problem: FlightProblem
-    likelihood: OutputErrorLikelihood
-    found: Minimum
-    messages: tuple[Message, ...] = ()
-
-    @property
-    def params(self) -> dict[str, float]:
-        """The values by parameter name."""
-        return dict(zip(self.problem.names, self.found.value.tolist(), strict=True))
-
-
-def fit_output_error(
-    maneuvers: Sequence[MeasuredManeuver],
-    model: AeroModel,
-    setting: Setting,
-    *,
-    noise: Mapping[str, float] | None = None,
-    bounds: Mapping[str, tuple[float, float]] | None = None,
-    priors: Mapping[str, Prior] | None = None,
-    algorithm: Algorithm = "gauss_newton",
-) -> OutputErrorFit:
-    """The search alone, without error bars for coloured residuals and verdicts.
-
-    model: its values are the start. noise: standard deviation of every output where it is known.
-    bounds, priors: by parameter name; of initial states and biases too, 'alpha(0)[id]'.
-    """
-    problem = FlightProblem(maneuvers, model, setting)
-    known = None
-    if noise is not None:
-        _check_names("noise", noise, setting.outputs, setting.outputs)
-        known = np.array([noise[name] for name in setting.outputs]) ** 2
-    likelihood = OutputErrorLikelihood(problem, known)
-    found = _search(likelihood, problem, problem.start, bounds or {}, priors or {}, algorithm)
-    said: tuple[Message, ...] = ()
-    if not found.converged and found.iterations == 0 and not setting.stabilize:
-        pull = {name: PULL for name in setting.states if name in setting.outputs}
-        held = FlightProblem(maneuvers, model, replace(setting, stabilize=pull))
-        first = _search(
-            OutputErrorLikelihood(held, known), held, held.start, bounds or {}, priors or {},
-            algorithm,
-        )  # fmt: skip
-        found = _search(likelihood, problem, first.value, bounds or {}, priors or {}, algorithm)
-        said = (
-            note(
-                "start_diverges",
-                where="output error",
-                expected="a motion that can be flown with the first values",
-                found=f"one that diverges; a first search pulled the states to their measurements "
-                f"({PULL:g}/s)",
-                do="Nothing where the search then converged; else give start values.",
-            ),
-        )
-    return OutputErrorFit(problem, likelihood, found, said)
 
 
 def identify_output_error(
@@ -171,6 +56,7 @@ def identify_output_error(
     common_constant: bool = True,
     stabilize: Mapping[str, float] | None = None,
     noise: Mapping[str, float] | None = None,
+    covariance: Covariance = "diagonal",
     algorithm: Algorithm = "gauss_newton",
     substeps: int = 1,
     scales: Mapping[str, float] | None = None,
@@ -183,6 +69,8 @@ def identify_output_error(
     'six' (all); what is not a state is taken as measured. outputs: what is compared. start: values
     of terms, others by equation error. initial, biases, common_constant, stabilize (1/s by state),
     substeps: see `Setting`. noise: standard deviations where they are known; else estimated.
+    covariance: of the residuals, 'full' where the errors of different outputs go together, as
+    those of a model do.
 
     A held-out maneuver is predicted with the derivatives of the others; its initial states, biases
     and own constants are fitted to itself. Raises BadInput for names that do not exist and for
@@ -221,15 +109,21 @@ def identify_output_error(
     values = {**start_values(learn, models, {**(fixed or {}), **(start or {})})}
     model = _model(models, values, learn[0])
     fit = fit_output_error(
-        learn, model, setting, noise=noise, bounds=bounds, priors=priors, algorithm=algorithm
-    )
+        learn, model, setting, noise=noise, bounds=bounds, priors=priors, algorithm=algorithm,
+        covariance=covariance,
+    )  # fmt: skip
     problem, found = fit.problem, fit.found
     said = [*(m for _, messages in whole for m in messages), *fit.messages, *_pulled(setting)]
     followed: dict[str, tuple[Feedback, ...]] = {}
     enough = {k: v for c, f in models.items() for k, v in reference_scales(c, f).items()}
     enough |= {n: ENOUGH.get(n.split("(")[0], 0.01) for n in problem.names if "(0)" in n}
-    fitted, blocks = _at(fit, priors or {})
+    fitted: list[Fitted] = []
+    blocks = []
     if found.converged:
+        blocks = fit.likelihood.blocks(found.value)
+        blocks += prior_blocks(problem.names, found.value, priors or {})
+        for i, m in enumerate(learn):
+            fitted += _fitted(m, problem.flight(found.value, i)[0], setting.outputs)
         followed = _followed(fit, models)
         said += [m for c, laws in followed.items() for m in warn_of_feedback(c, laws)]
         for m in maneuvers:
@@ -260,45 +154,6 @@ def identify_output_error(
     )
 
 
-def _search(
-    likelihood: OutputErrorLikelihood,
-    problem: FlightProblem,
-    start: Array,
-    bounds: Mapping[str, tuple[float, float]],
-    priors: Mapping[str, Prior],
-    algorithm: Algorithm,
-) -> Minimum:
-    _check_names("bounds", bounds, problem.names)
-    _check_names("priors", priors, problem.names)
-    low = np.array([bounds.get(n, (-np.inf, np.inf))[0] for n in problem.names])
-    high = np.array([bounds.get(n, (-np.inf, np.inf))[1] for n in problem.names])
-    if not priors:
-        return minimize(likelihood, start, algorithm=algorithm, lower=low, upper=high)
-    mean = np.array([priors[n].mean if n in priors else 0.0 for n in problem.names])
-    weight = np.array([priors[n].se ** -2 if n in priors else 0.0 for n in problem.names])
-    joint = with_prior(likelihood, mean, np.diag(weight))
-    return minimize(joint, start, algorithm=algorithm, lower=low, upper=high)
-
-
-def _at(fit: OutputErrorFit, priors: Mapping[str, Prior]) -> tuple[list[Fitted], list[Whitened]]:
-    """Outputs, and whitened residuals with their slopes, where the search ended."""
-    problem, theta = fit.problem, fit.found.value
-    if not fit.found.converged:
-        return [], []
-    deviation = np.sqrt(fit.likelihood.variance(problem.evaluate(theta)))
-    fitted, blocks = [], []
-    for i, m in enumerate(problem.maneuvers):
-        y, slopes = problem.flight(theta, i)
-        for o, name in enumerate(problem.setting.outputs):
-            measured = m.outputs[name]
-            fitted.append(Fitted(name, m.maneuver.id, m.t, measured, y[:, o], False))
-            good = np.isfinite(measured)
-            if good.any():
-                error = (measured - y[:, o])[good] / deviation[o]
-                blocks.append(Whitened(slopes[good, o] / deviation[o], error))
-    return fitted, blocks + prior_blocks(problem.names, theta, priors)
-
-
 def _predicted(
     m: MeasuredManeuver, fit: OutputErrorFit, model: AeroModel, setting: Setting
 ) -> list[Fitted]:
@@ -309,11 +164,14 @@ def _predicted(
     known = {n: v for n, v in values.items() if n not in own and n not in setting.tied}
     start = replace(model, values=np.array([values[n] for n in model.names]))
     problem = FlightProblem([m], start, replace(setting, fixed={**setting.fixed, **known}))
-    found = minimize(OutputErrorLikelihood(problem, None), problem.start)
-    y, _ = problem.flight(found.value, 0)
+    found = minimize(likelihood_of(problem, None, False), problem.start)
+    return _fitted(m, problem.flight(found.value, 0)[0], setting.outputs)
+
+
+def _fitted(m: MeasuredManeuver, y: Array, outputs: Sequence[str]) -> list[Fitted]:
     return [
-        Fitted(name, m.maneuver.id, m.t, m.outputs[name], y[:, o], True)
-        for o, name in enumerate(setting.outputs)
+        Fitted(name, m.maneuver.id, m.t, m.outputs[name], y[:, o], m.maneuver.held_out)
+        for o, name in enumerate(outputs)
     ]
 
 
@@ -361,21 +219,3 @@ def _unit(belongs: str, name: str) -> str:
     if "(0)" in name or name.startswith("b_"):
         return _UNITS.get(belongs, "rad")
     return unit(belongs, name)
-
-
-def _check_names(
-    what: str,
-    given: Mapping[str, object],
-    known: Sequence[str],
-    needed: Sequence[str] = (),
-) -> None:
-    bad = [n for n in given if n not in known]
-    missing = [n for n in needed if n not in given]
-    if bad or missing:
-        raise refuse(
-            "unknown_parameter",
-            where=f"output error, {what}",
-            expected=f"{'all of' if needed else 'some of'} {', '.join(known)}",
-            found=f"{', '.join(bad) or 'nothing unknown'}; missing: {', '.join(missing) or 'none'}",
-            do="Correct the names.",
-        )

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
@@ -17,8 +16,9 @@ from alula.base.arrays import Array
 from alula.base.messages import refuse
 from alula.core import core
 from alula.identify.measured_maneuver import CONTROLS, OUTPUTS, STATES, MeasuredManeuver
+from alula.identify.output_error_core import ManeuverInCore, Spread, input_rows
 from alula.identify.typical import constant_name
-from alula.model import AXES, AeroModel, to_table
+from alula.model import AeroModel, to_table
 
 STATE_SETS: Mapping[str, tuple[str, ...]] = {
     "longitudinal": ("V", "alpha", "theta", "q"),
@@ -68,7 +68,8 @@ class Setting:
 class FlightProblem:
     """The problem of `setting` on maneuvers with one model; its values are the start.
 
-    names: (k,) of the parameters. belongs: (k,) the coefficient, state or output of each. start: (k,).
+    names: (k,) of the parameters. belongs: (k,) the coefficient, state or output of each. start:
+    (k,).
     """
 
     def __init__(
@@ -90,7 +91,9 @@ class FlightProblem:
     @property
     def readings(self) -> list[Array]:
         """Measured outputs (n, m) of each maneuver, NaN where a sensor says nothing."""
-        return [np.column_stack([m.outputs[n] for n in self.setting.outputs]) for m in self.maneuvers]
+        return [
+            np.column_stack([m.outputs[n] for n in self.setting.outputs]) for m in self.maneuvers
+        ]
 
     def _check(self) -> None:
         s, names = self.setting, self.model.names
@@ -99,7 +102,10 @@ class FlightProblem:
             bad = [name for name in what if name not in known]
             if bad or not what:
                 raise _refused(
-                    key, f"some of {', '.join(known)}", ", ".join(bad) or "none", "Correct the list."
+                    key,
+                    f"some of {', '.join(known)}",
+                    ", ".join(bad) or "none",
+                    "Correct the list.",
                 )
         for key, given in (("fixed", s.fixed), ("tied", s.tied)):
             bad = [name for name in given if name not in names]
@@ -121,7 +127,10 @@ class FlightProblem:
         bad = [n for n in s.stabilize if n not in s.states or n not in s.outputs]
         if bad:
             raise _refused(
-                "stabilize", "states that are outputs", ", ".join(bad), "Measure them, or leave out."
+                "stabilize",
+                "states that are outputs",
+                ", ".join(bad),
+                "Measure them, or leave out.",
             )
         if s.initial not in ("estimate", "measured"):
             raise _refused("initial", "'estimate' or 'measured'", repr(s.initial), "Choose one.")
@@ -194,7 +203,7 @@ class FlightProblem:
             )
         return initial, bias
 
-    def _in_core(self, i: int) -> _Fit:
+    def _in_core(self, i: int) -> ManeuverInCore:
         m, s = self.maneuvers[i], self.setting
         used = sorted({c for c in (*self._terms[i], *self._initial[i], *self._bias[i]) if c >= 0})
         if len(used) > MAX_COLUMNS:
@@ -231,12 +240,12 @@ class FlightProblem:
         )
         terms = np.array(self._terms[i], dtype=np.int64)
         first = np.array([m.motion[name][0] for name in STATES], dtype=np.float64)
-        return _Fit(
+        return ManeuverInCore(
             fit,
             np.array(used, dtype=np.int64),
-            _Spread(self._values[i], terms, self._weights[i]),
-            _Spread(first, np.array(self._initial[i])),
-            _Spread(np.zeros(len(s.outputs)), np.array(self._bias[i])),
+            Spread(self._values[i], terms, self._weights[i]),
+            Spread(first, np.array(self._initial[i])),
+            Spread(np.zeros(len(s.outputs)), np.array(self._bias[i])),
             len(m.t),
         )
 
@@ -271,56 +280,6 @@ class FlightProblem:
         """Values of all terms by name, tied and fixed ones included; constants of maneuver 0."""
         values = self._fits[0].values.at(theta)
         return dict(zip(self.model.names, values.tolist(), strict=True))
-
-
-class _Spread:
-    """Values of which some are parameters: `at(theta)` puts them in."""
-
-    def __init__(self, fixed: Array, column: Array, weight: Array | None = None) -> None:
-        self.fixed = np.array(fixed, dtype=np.float64)
-        self.places = np.flatnonzero(column >= 0)
-        self.columns = column[self.places]
-        self.weight = np.ones(len(self.places)) if weight is None else weight[self.places]
-
-    def at(self, theta: Array) -> Array:
-        out = self.fixed.copy()
-        out[self.places] = self.weight * theta[self.columns]
-        return out
-
-
-@dataclass(frozen=True)
-class _Fit:
-    """One maneuver in the core. used: which parameters act on it."""
-
-    core: Any
-    used: Array
-    values: _Spread
-    initial: _Spread
-    bias: _Spread
-    samples: int
-
-    def arguments(self, theta: Array) -> tuple[Array, Array, Array]:
-        return self.values.at(theta), self.initial.at(theta), self.bias.at(theta)
-
-
-def input_rows(m: MeasuredManeuver, model: AeroModel) -> Array:
-    """The core's rows of inputs (n, 28) for one maneuver.
-
-    Coefficients without a formula come as measured, so far as the maneuver has them.
-    """
-    rows = np.zeros((len(m.t), 28))
-    for j, name in enumerate(STATES):
-        rows[:, j] = m.motion[name]
-    for j, name in enumerate(CONTROLS, start=8):
-        rows[:, j] = m.controls.get(name, 0.0)
-    rows[:, 13] = m.rho
-    rows[:, 14] = 1.0 / m.speed_of_sound
-    rows[:, 15:18] = m.force
-    rows[:, 18:21] = m.moment
-    for j, name in enumerate(AXES[model.axes], start=21):
-        if name not in model.coefficients:
-            rows[:, j] = m.coefficients.get(name, 0.0)
-    return rows
 
 
 def _first(m: MeasuredManeuver, name: str) -> float:

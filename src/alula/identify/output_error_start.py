@@ -14,6 +14,7 @@ from alula.base.local_cubic import LocalCubic
 from alula.base.messages import refuse
 from alula.identify.least_squares import least_squares
 from alula.identify.measured_maneuver import STATES, MeasuredManeuver
+from alula.identify.output_error_core import filled, force_coefficients
 from alula.model import LIFT, parse
 
 _COLUMN = {"CX": 0, "CY": 1, "CZ": 2, "Cl": 0, "Cm": 1, "Cn": 2}
@@ -48,7 +49,9 @@ def start_values(
         rows = []
         for m, known, own in zip(maneuvers, variables, measured, strict=True):
             with_lift = {**known, LIFT: own[LIFT]} if LIFT in own else known
-            rows.append(np.column_stack([np.broadcast_to(t.values(with_lift), m.t.shape) for t in terms]))
+            rows.append(
+                np.column_stack([np.broadcast_to(t.values(with_lift), m.t.shape) for t in terms])
+            )
         matrix = np.vstack(rows)
         y = np.concatenate([c[coefficient] for c in measured])
         free = [i for i, n in enumerate(names) if n not in given]
@@ -66,7 +69,7 @@ def start_values(
 
 def regressor_variables(m: MeasuredManeuver) -> dict[str, Array]:
     """The formulas' variables (n,), from outputs where they were measured, else from the motion."""
-    x = {name: _filled(m, name) for name in STATES}
+    x = {name: filled(m, name) for name in STATES}
     half = 0.5 / x["V"]
     return {
         "V": x["V"],
@@ -82,16 +85,9 @@ def regressor_variables(m: MeasuredManeuver) -> dict[str, Array]:
 
 def measured_coefficients(m: MeasuredManeuver) -> dict[str, Array]:
     """The coefficients (n,) that the maneuver tells: as it has them, else from its outputs."""
-    out = dict(m.coefficients)
-    x = {name: _filled(m, name) for name in STATES}
+    out = {**force_coefficients(m), **m.coefficients}
+    x = {name: filled(m, name) for name in STATES}
     pressure_area = 0.5 * m.rho * x["V"] ** 2 * m.reference.S
-    for i, (force, name) in enumerate((("CX", "ax"), ("CY", "ay"), ("CZ", "az"))):
-        if force not in out and name in m.outputs:
-            out[force] = (m.mass * m.outputs[name] - m.force[:, i]) / pressure_area
-    if "CX" in out and "CZ" in out and LIFT not in out:
-        sin, cos = np.sin(x["alpha"]), np.cos(x["alpha"])
-        out["CD"] = -out["CX"] * cos - out["CZ"] * sin
-        out["CL"] = out["CX"] * sin - out["CZ"] * cos
     if not {"Cl", "Cm", "Cn"} <= out.keys():
         rates = np.column_stack([x["p"], x["q"], x["r"]])
         cubic = LocalCubic(m.t)
@@ -109,9 +105,3 @@ def measured_coefficients(m: MeasuredManeuver) -> dict[str, Array]:
             if name not in out:
                 out[name] = moment[:, _COLUMN[name]] / (pressure_area * length)
     return out
-
-
-def _filled(m: MeasuredManeuver, name: str) -> Array:
-    """A variable as measured, the motion's where there is no reading."""
-    reading = m.outputs.get(name, m.motion[name])
-    return np.where(np.isfinite(reading), reading, m.motion[name])

@@ -100,7 +100,7 @@ class AeroModel:
         return out
 
     def check_without_lift(self, consumer: str) -> None:
-        """Raise BadInput where the drag needs the lift coefficient, which `consumer` cannot take."""
+        """Raise BadInput where the drag uses the lift coefficient: `consumer` cannot."""
         if self.needs_lift:
             raise refuse(
                 "lift_in_drag",

@@ -39,21 +39,22 @@ void take_up(const VariationalPlan<axes>& plan, int sample, const Sensitive<axes
   using K = Kernel<axes>;
   using D = typename Instant<axes>::D;
   const MeasuredManeuver& m = *plan.m;
-  const int stride = 4 * plan.blocks;
+  using V = Lanes<double, kLanes>;
+  const int stride = plan.stride;
   const double* z = m.measured + static_cast<long>(sample) * m.outputs;
   const double* u = m.inputs + static_cast<long>(sample) * kManeuverInputs;
   for (int o = 0; o < m.outputs; ++o) {
     const int which = m.output[o];
     const bool wanted = z[o] == z[o];
     if (!wanted && !sums.predicted && !sums.sensitivity) continue;
-    SensitivityRow J;
+    alignas(32) SensitivityRow J;
     double y = 0.0;
     if (which < kMotionVariables) {
       int own = -1;
       for (int i = 0; i < K::kStates; ++i)
         if (K::state[i] == which && plan.is_state[i]) own = i;
       y = own < 0 ? u[kInMotion + which] : at.x[own];
-      for (int j = 0; j < plan.blocks; ++j) J[j] = own < 0 ? Four(0.0) : at.S[own][j];
+      for (int j = 0; j < stride; ++j) J[j] = own < 0 ? 0.0 : at.S[own][j];
     } else {
       const D& d = which == kOutAx     ? here.y.ax
                    : which == kOutAy   ? here.y.ay
@@ -65,26 +66,25 @@ void take_up(const VariationalPlan<axes>& plan, int sample, const Sensitive<axes
       total_slope(plan, d, at.S, here, J);
     }
     y += bias[o];
-    if (const int column = m.bias_column[o]; column >= 0) J[column / 4].set(column % 4, 1.0);
+    if (m.bias_column[o] >= 0) J[m.bias_column[o]] = 1.0;
     if (sums.predicted) sums.predicted[static_cast<long>(sample) * m.outputs + o] = y;
     if (sums.sensitivity) {
       double* row = sums.sensitivity + (static_cast<long>(sample) * m.outputs + o) * m.columns;
-      for (int k = 0; k < m.columns; ++k) row[k] = J[k / 4][k % 4];
+      for (int k = 0; k < m.columns; ++k) row[k] = J[k];
     }
     if (!wanted) continue;
     const double e = z[o] - y;
     sums.squares[o] += e * e;
     ++sums.counts[o];
-    if (sums.gradient) {
-      double* gradient = sums.gradient + o * stride;
-      double* row = sums.information + static_cast<long>(o) * m.columns * stride;
-      for (int j = 0; j < plan.blocks; ++j)
-        (Four::load(gradient + 4 * j) + Four(e) * J[j]).store(gradient + 4 * j);
-      for (int i = 0; i < m.columns; ++i, row += stride) {
-        const Four factor(J[i / 4][i % 4]);
-        for (int j = i / 4; j < plan.blocks; ++j)
-          (Four::load(row + 4 * j) + factor * J[j]).store(row + 4 * j);
-      }
+    if (!sums.gradient) continue;
+    double* gradient = sums.gradient + o * stride;
+    double* row = sums.information + static_cast<long>(o) * m.columns * stride;
+    for (int j = 0; j < stride; j += kLanes)
+      (V::load(gradient + j) + V(e) * V::load(J + j)).store(gradient + j);
+    for (int i = 0; i < m.columns; ++i, row += stride) {
+      const V factor(J[i]);
+      for (int j = i / kLanes * kLanes; j < stride; j += kLanes)
+        (V::load(row + j) + factor * V::load(J + j)).store(row + j);
     }
   }
 }
@@ -102,9 +102,9 @@ int fly_maneuver(const MeasuredManeuver& m, const double* values, const double* 
   Sensitive<axes> now, sum, trial, k;
   for (int i = 0; i < K::kStates; ++i) {
     now.x[i] = initial[K::state[i]];
-    for (int j = 0; j < plan.blocks; ++j) now.S[i][j] = Four(0.0);
+    for (int j = 0; j < plan.stride; ++j) now.S[i][j] = 0.0;
     const int column = m.initial_column[K::state[i]];
-    if (plan.is_state[i] && column >= 0) now.S[i][column / 4].set(column % 4, 1.0);
+    if (plan.is_state[i] && column >= 0) now.S[i][column] = 1.0;
   }
   Instant<axes> here;
   double u[3][kManeuverInputs], z[3][kMeasuredOutputs];
@@ -129,27 +129,14 @@ int fly_maneuver(const MeasuredManeuver& m, const double* values, const double* 
       rates_of(plan, now, here, z[0], sum);
       const Sensitive<axes>* rate = &sum;
       for (int stage = 1; stage < 4; ++stage) {
-        const double far = stage == 3 ? h : 0.5 * h;
-        for (int i = 0; i < K::kStates; ++i) {
-          trial.x[i] = now.x[i] + far * rate->x[i];
-          for (int j = 0; j < plan.blocks; ++j)
-            trial.S[i][j] = now.S[i][j] + Four(far) * rate->S[i][j];
-        }
+        along(plan, now, stage == 3 ? h : 0.5 * h, *rate, trial);
         const int at = stage == 3 ? 2 : 1;
         evaluate(plan, trial.x, u[at], here);
         rates_of(plan, trial, here, z[at], k);
-        const double weight = stage == 3 ? 1.0 : 2.0;
-        for (int i = 0; i < K::kStates; ++i) {
-          sum.x[i] += weight * k.x[i];
-          for (int j = 0; j < plan.blocks; ++j) sum.S[i][j] += Four(weight) * k.S[i][j];
-        }
+        along(plan, sum, stage == 3 ? 1.0 : 2.0, k, sum);
         rate = &k;
       }
-      const double sixth = h / 6.0;
-      for (int i = 0; i < K::kStates; ++i) {
-        now.x[i] += sixth * sum.x[i];
-        for (int j = 0; j < plan.blocks; ++j) now.S[i][j] += Four(sixth) * sum.S[i][j];
-      }
+      along(plan, now, h / 6.0, sum, now);
     }
   }
   return m.samples;

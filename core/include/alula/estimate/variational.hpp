@@ -31,37 +31,37 @@ struct Kernel<Axes::six> {
   static constexpr int coefficient[6] = {0, 1, 2, 3, 4, 5};
 };
 
-// Rows of sensitivities: in blocks of four, as many as the parameters need.
-using Four = Lanes<double, 4>;
-inline constexpr int kBlocks = kMaxParameters / 4;
-using SensitivityRow = Four[kBlocks];
+// Rows of sensitivities: a number for each parameter, filled up with zeros to whole registers.
+using SensitivityRow = double[kMaxParameters];
+static_assert(kMaxParameters % 4 == 0);
 
 // The motion at one instant and its derivatives by the parameters.
 template <Axes axes>
 struct Sensitive {
   double x[Kernel<axes>::kStates];
-  SensitivityRow S[Kernel<axes>::kStates];
+  alignas(32) SensitivityRow S[Kernel<axes>::kStates];
 };
 
-// What a run needs beside the maneuver, found once: which slots feed which parameter.
+// What a run needs beside the maneuver, found once: which slots feed which coefficient and which
+// parameter.
 template <Axes axes>
 struct VariationalPlan {
   const MeasuredManeuver* m;
   const double* values;  // of all terms
-  int blocks;
+  int stride;            // columns, filled up
   bool uses[kVariables];
-  int free_count;
-  struct Free {
-    int force, slot, column;
-    double weight;
-  } free[kMaxTerms];
+  int count[Kernel<axes>::kForces];
+  struct Summand {
+    int slot, column;  // column -1: fixed
+    double value, weight;
+  } terms[Kernel<axes>::kForces][kMaxTerms];
   bool is_state[Kernel<axes>::kStates];
   double pull[Kernel<axes>::kStates];
   int pull_output[Kernel<axes>::kStates];  // place among the outputs, -1: none
 };
 
 template <Axes axes>
-inline int force_of(int coefficient) {
+constexpr int force_of(int coefficient) {
   for (int c = 0; c < Kernel<axes>::kForces; ++c)
     if (Kernel<axes>::coefficient[c] == coefficient) return c;
   return -1;
@@ -72,14 +72,15 @@ VariationalPlan<axes> variational_plan(const MeasuredManeuver& m, const double* 
   VariationalPlan<axes> plan{};
   plan.m = &m;
   plan.values = values;
-  plan.blocks = (m.columns + 3) / 4;
+  plan.stride = (m.columns + 3) / 4 * 4;
   const TermTable& table = *m.table;
   for (int k = 0; k < table.term_count; ++k) {
     const Term& term = table.terms[static_cast<unsigned>(k)];
     if (term.slot < kVariables) plan.uses[term.slot] = true;
     const int force = force_of<axes>(term.coefficient);
-    if (m.term_column[k] >= 0 && force >= 0)
-      plan.free[plan.free_count++] = {force, term.slot, m.term_column[k], m.term_weight[k]};
+    if (force >= 0)
+      plan.terms[force][plan.count[force]++] = {term.slot, m.term_column[k], values[k],
+                                                m.term_weight[k]};
   }
   for (int i = 0; i < table.step_count; ++i) {
     const Step& step = table.steps[static_cast<unsigned>(i)];
@@ -102,8 +103,70 @@ template <Axes axes>
 struct Instant {
   using D = Dual<double, Kernel<axes>::kDirections>;
   MotionRates<D> y;
-  SensitivityRow by_parameter[Kernel<axes>::kForces];  // of the coefficients, at fixed state
+  alignas(32) SensitivityRow by_parameter[Kernel<axes>::kForces];  // at fixed state
 };
+
+namespace detail {
+
+// The base variables of the table. x: the kernel's variables, states and others, seeded.
+template <Axes axes, class D, class L, class M>
+inline void base_slots(const VariationalPlan<axes>& plan, const MotionState<L, M>& s,
+                       const double* u, D* slots) {
+  const MeasuredManeuver& m = *plan.m;
+  slots[kOne] = D(1.0);
+  if (plan.uses[kV]) slots[kV] = D(s.V);
+  if (plan.uses[kAlpha]) slots[kAlpha] = D(s.alpha);
+  if (plan.uses[kBeta]) slots[kBeta] = D(s.beta);
+  if (plan.uses[kPhat] || plan.uses[kQhat] || plan.uses[kRhat]) {
+    const L half_per_V = 0.5 / s.V;
+    if (plan.uses[kPhat]) slots[kPhat] = D(m.b * (half_per_V * s.p));
+    if (plan.uses[kQhat]) slots[kQhat] = D(m.c * (half_per_V * s.q));
+    if (plan.uses[kRhat]) slots[kRhat] = D(m.b * (half_per_V * s.r));
+  }
+  for (int i = 0; i < 5; ++i)
+    if (plan.uses[kDe + i]) slots[kDe + i] = D(u[kInControls + i]);
+  if (plan.uses[kMach]) slots[kMach] = D(u[kInSlowness] * s.V);
+}
+
+// The directions as rows of slopes: a seed is added whole, since an element put into a register
+// would have to go through memory.
+template <int N>
+struct Directions {
+  double row[N][N] = {};
+  constexpr Directions() {
+    for (int i = 0; i < N; ++i) row[i][i] = 1.0;
+  }
+};
+template <int N>
+inline constexpr Directions<N> kDirectionRows{};
+
+template <int N>
+inline void seed(Dual<double, N>& x, int direction) {
+  using Block = typename Dual<double, N>::Block;
+  for (int i = 0; i < Dual<double, N>::kBlocks; ++i)
+    x.slope[i] += Block::load(kDirectionRows<N>.row[direction] + 4 * i);
+}
+
+// One coefficient with a slope of one along its own direction, beside what the states do to it.
+template <Axes axes, class D>
+inline D seeded_force(const VariationalPlan<axes>& plan, int force, const D* slots,
+                      const double* u) {
+  D sum(u[kInCoefficients + Kernel<axes>::coefficient[force]]);
+  for (int k = 0; k < plan.count[force]; ++k) {
+    const auto& term = plan.terms[force][k];
+    sum += term.value * slots[term.slot];
+  }
+  seed(sum, Kernel<axes>::kStates + force);
+  return sum;
+}
+
+// Slopes as plain numbers.
+template <class D>
+inline void slopes_of(const D& y, double* out) {
+  __builtin_memcpy(out, y.slope, sizeof y.slope);
+}
+
+}  // namespace detail
 
 // u: a row of inputs; x: the kernel's variables, states and others.
 template <Axes axes>
@@ -116,8 +179,10 @@ inline void evaluate(const VariationalPlan<axes>& plan, const double* x, const d
   const MeasuredManeuver& m = *plan.m;
 
   D seeded[K::kStates];
-  for (int i = 0; i < K::kStates; ++i)
-    seeded[i] = plan.is_state[i] ? D::variable(x[i], i) : D(u[kInMotion + K::state[i]]);
+  for (int i = 0; i < K::kStates; ++i) {
+    seeded[i] = D(plan.is_state[i] ? x[i] : u[kInMotion + K::state[i]]);
+    if (plan.is_state[i]) detail::seed(seeded[i], i);
+  }
   MotionState<L, M> s;
   if constexpr (axes == Axes::longitudinal)
     s = {seeded[0],      seeded[1],   seeded[2],   seeded[3],
@@ -128,58 +193,59 @@ inline void evaluate(const VariationalPlan<axes>& plan, const double* x, const d
   else
     s = {seeded[0], seeded[1], seeded[7], seeded[4], seeded[2], seeded[3], seeded[5], seeded[6]};
 
+  // Each coefficient has a direction of its own. The drag that uses the lift takes up the lift's.
   D slots[kMaxSlots];
-  slots[kOne] = D(1.0);
-  const L half_per_V = 0.5 / s.V;
-  if (plan.uses[kV]) slots[kV] = D(s.V);
-  if (plan.uses[kAlpha]) slots[kAlpha] = D(s.alpha);
-  if (plan.uses[kBeta]) slots[kBeta] = D(s.beta);
-  if (plan.uses[kPhat]) slots[kPhat] = D(m.b * (half_per_V * s.p));
-  if (plan.uses[kQhat]) slots[kQhat] = D(m.c * (half_per_V * s.q));
-  if (plan.uses[kRhat]) slots[kRhat] = D(m.b * (half_per_V * s.r));
-  for (int i = 0; i < 5; ++i)
-    if (plan.uses[kDe + i]) slots[kDe + i] = D(u[kInControls + i]);
-  if (plan.uses[kMach]) slots[kMach] = D(u[kInSlowness] * s.V);
-
-  // Each coefficient has a direction of its own, beside what the states do to it. The drag that
-  // uses the lift thereby takes up the lift's direction.
-  const TermTable& table = *m.table;
-  const auto seed = [](D& c, int which) {
-    const int force = force_of<axes>(which);
-    if (force >= 0) c.set_slope(K::kStates + force, c.slope_of(K::kStates + force) + 1.0);
-  };
-  fill_slots(table, slots, m.lookups, [&](const D* filled) {
-    D lift = coefficient(table, plan.values, filled, kLift) + u[kInCoefficients + kLift];
-    seed(lift, kLift);
-    return lift;
+  detail::base_slots<axes, D>(plan, s, u, slots);
+  constexpr int lift = force_of<axes>(kLift);
+  fill_slots(*m.table, slots, m.lookups, [&](const D* filled) {
+    if constexpr (lift < 0) return D(u[kInCoefficients + kLift]);
+    return detail::seeded_force(plan, lift < 0 ? 0 : lift, filled, u);
   });
-  std::array<D, kCoefficients> C = coefficients(table, plan.values, slots);
-  for (int c = 0; c < kCoefficients; ++c) {
-    C[static_cast<unsigned>(c)].value += u[kInCoefficients + c];
-    seed(C[static_cast<unsigned>(c)], c);
+  std::array<D, kCoefficients> C;
+  for (int c = 0; c < kCoefficients; ++c)
+    if (force_of<axes>(c) < 0) C[static_cast<unsigned>(c)] = D(u[kInCoefficients + c]);
+  for (int c = 0; c < K::kForces; ++c) {
+    C[static_cast<unsigned>(K::coefficient[c])] = detail::seeded_force(plan, c, slots, u);
   }
   flight_equations<axes, D>(s, C, u, m, out.y);
 
-  for (auto& row : out.by_parameter)
-    for (int j = 0; j < plan.blocks; ++j) row[j] = Four(0.0);
-  for (int k = 0; k < plan.free_count; ++k) {
-    const auto& f = plan.free[k];
-    Four& block = out.by_parameter[f.force][f.column / 4];
-    block.set(f.column % 4, block[f.column % 4] + f.weight * slots[f.slot].value);
+  for (int c = 0; c < K::kForces; ++c) {
+    double* row = out.by_parameter[c];
+    for (int j = 0; j < plan.stride; ++j) row[j] = 0.0;
+    for (int k = 0; k < plan.count[c]; ++k) {
+      const auto& term = plan.terms[c][k];
+      if (term.column >= 0) row[term.column] += term.weight * slots[term.slot].value;
+    }
   }
 }
 
 // A quantity's derivatives by the parameters: through the states and through the coefficients.
 template <Axes axes>
 inline void total_slope(const VariationalPlan<axes>& plan, const typename Instant<axes>::D& y,
-                        const SensitivityRow* S, const Instant<axes>& at, Four* out) {
+                        const SensitivityRow* S, const Instant<axes>& at, double* out) {
   using K = Kernel<axes>;
-  for (int j = 0; j < plan.blocks; ++j) {
-    Four sum(0.0);
-    for (int i = 0; i < K::kStates; ++i) sum += Four(y.slope_of(i)) * S[i][j];
+  using V = Lanes<double, kLanes>;
+  double slope[K::kDirections];
+  detail::slopes_of(y, slope);
+  for (int j = 0; j < plan.stride; j += kLanes) {
+    V sum = V(slope[0]) * V::load(S[0] + j);
+    for (int i = 1; i < K::kStates; ++i) sum += V(slope[i]) * V::load(S[i] + j);
     for (int c = 0; c < K::kForces; ++c)
-      sum += Four(y.slope_of(K::kStates + c)) * at.by_parameter[c][j];
-    out[j] = sum;
+      sum += V(slope[K::kStates + c]) * V::load(at.by_parameter[c] + j);
+    sum.store(out + j);
+  }
+}
+
+// y = x + f k over the used columns.
+template <Axes axes>
+inline void along(const VariationalPlan<axes>& plan, const Sensitive<axes>& x, double f,
+                  const Sensitive<axes>& k, Sensitive<axes>& y) {
+  using V = Lanes<double, kLanes>;
+  const V factor(f);
+  for (int i = 0; i < Kernel<axes>::kStates; ++i) {
+    y.x[i] = x.x[i] + f * k.x[i];
+    for (int j = 0; j < plan.stride; j += kLanes)
+      (V::load(x.S[i] + j) + factor * V::load(k.S[i] + j)).store(y.S[i] + j);
   }
 }
 
@@ -191,7 +257,7 @@ inline void rates_of(const VariationalPlan<axes>& plan, const Sensitive<axes>& a
   for (int i = 0; i < K::kStates; ++i) {
     if (!plan.is_state[i]) {
       k.x[i] = 0.0;
-      for (int j = 0; j < plan.blocks; ++j) k.S[i][j] = Four(0.0);
+      for (int j = 0; j < plan.stride; ++j) k.S[i][j] = 0.0;
       continue;
     }
     const auto& rate = here.y.rate[K::state[i]];
@@ -200,7 +266,7 @@ inline void rates_of(const VariationalPlan<axes>& plan, const Sensitive<axes>& a
     const double gain = plan.pull[i];
     if (gain > 0.0 && z[plan.pull_output[i]] == z[plan.pull_output[i]]) {
       k.x[i] += gain * (z[plan.pull_output[i]] - at.x[i]);
-      for (int j = 0; j < plan.blocks; ++j) k.S[i][j] = k.S[i][j] - Four(gain) * at.S[i][j];
+      for (int j = 0; j < plan.stride; ++j) k.S[i][j] -= gain * at.S[i][j];
     }
   }
 }

@@ -1,0 +1,234 @@
+// Output error: sensitivities against differences in every set of states, no allocation, a motion
+// that diverges.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "allocations.hpp"
+#include "alula/estimate/output_error.hpp"
+
+namespace {
+
+using alula::Axes;
+
+// A maneuver of a light aircraft with made-up readings; models in body or stability axes.
+struct Case {
+  alula::TermTable table{};
+  alula::MeasuredManeuver m;
+  std::vector<double> values, t, inputs, measured;
+  double initial[alula::kMotionVariables] = {45, .05, .01, .02, .01, -.02, .03, .05};
+  double bias[alula::kMeasuredOutputs] = {};
+
+  int step(alula::Operation operation, int a, int b) {
+    table.steps[table.step_count] = {
+        0, operation, static_cast<std::uint8_t>(a), static_cast<std::uint8_t>(b), 0, 0};
+    return alula::kVariables + table.step_count++;
+  }
+  void term(int coefficient, int slot, double value) {
+    table.terms[table.term_count++] = {static_cast<std::uint8_t>(coefficient),
+                                       static_cast<std::uint8_t>(slot)};
+    values.push_back(value);
+  }
+
+  Case(bool lateral, bool longitudinal, bool stability) {
+    using namespace alula;
+    if (longitudinal) {
+      const double sign = stability ? 1.0 : -1.0;
+      term(2, kOne, sign * .25);
+      term(2, kAlpha, sign * 5.0);
+      term(2, kQhat, sign * 4.0);
+      term(4, kOne, .03);
+      term(4, kAlpha, -.8);
+      term(4, kQhat, -12.0);
+      term(4, kDe, -1.1);
+      if (stability) {
+        const int lift = step(Operation::lift, 0, 0);
+        term(0, kOne, .035);
+        term(0, step(Operation::multiply, lift, lift), .05);
+      } else {
+        term(0, kOne, -.03);
+        term(0, step(Operation::multiply, kAlpha, kAlpha), 2.0);
+        term(0, kMach, -.01);
+      }
+    }
+    if (lateral) {
+      term(1, kBeta, -.7);
+      term(3, kBeta, -.08);
+      term(3, kPhat, -.5);
+      term(3, kDa, -.2);
+      term(5, kBeta, .09);
+      term(5, kRhat, -.15);
+      term(5, kDr, -.09);
+    }
+    m.table = &table;
+    m.stability_axes = stability;
+    m.S = 11.85, m.b = 9, m.c = 1.21, m.mass = 600;
+    m.inertia = {{{1200, 0, -90}, {0, 1100, 0}, {-90, 0, 2100}}};
+    m.inertia_inverse = inverse(m.inertia);
+    m.arm = {.05, .01, -.02};
+    for (int i : {0, 1, 4, 7}) m.is_state[i] = longitudinal;
+    for (int i : {2, 3, 5, 6}) m.is_state[i] = lateral;
+    for (int i = 0; i < kMotionVariables; ++i)
+      if (m.is_state[i]) m.output[m.outputs++] = i;
+    if (longitudinal)
+      for (int o : {kOutAx, kOutAz, kOutQdot}) m.output[m.outputs++] = o;
+    if (lateral)
+      for (int o : {kOutAy, kOutPdot, kOutRdot}) m.output[m.outputs++] = o;
+    for (int k = 0; k < table.term_count; ++k) {
+      m.term_column[k] = m.columns++;
+      m.term_weight[k] = 1.0;
+    }
+    for (int i = 0; i < kMotionVariables; ++i)
+      m.initial_column[i] = m.is_state[i] ? m.columns++ : -1;
+    for (int o = 0; o < m.outputs; ++o) m.bias_column[o] = -1;
+    m.bias_column[1] = m.columns++;
+    m.pull[kMotionAlpha] = longitudinal ? 0.3 : 0.0;
+    m.samples = 150;
+    t.resize(150);
+    inputs.assign(150 * kManeuverInputs, 0.0);
+    measured.assign(static_cast<std::size_t>(150 * m.outputs), 0.0);
+    for (int k = 0; k < 150; ++k) {
+      t[static_cast<std::size_t>(k)] = .02 * k;
+      double* u = &inputs[static_cast<std::size_t>(k * kManeuverInputs)];
+      std::copy(initial, initial + kMotionVariables, u);
+      u[kInControls] = .03 * std::sin(.1 * k);
+      u[kInControls + 1] = .02 * std::cos(.07 * k);
+      u[kInControls + 2] = .02 * std::sin(.05 * k);
+      u[kInDensity] = 1.112;
+      u[kInSlowness] = 1 / 340.0;
+      u[kInForce] = 700;
+      u[kInMoment + 1] = 5;
+      if (!longitudinal) u[kInCoefficients] = -.03, u[kInCoefficients + 2] = -.5;
+      for (int o = 0; o < m.outputs; ++o)
+        measured[static_cast<std::size_t>(k * m.outputs + o)] = .05 + .01 * o;
+    }
+    m.t = t.data();
+    m.inputs = inputs.data();
+    m.measured = measured.data();
+  }
+
+  // Outputs with column c of the parameters moved by h.
+  template <Axes axes>
+  std::vector<double> moved(int c, double h) const {
+    std::vector<double> v = values, y(static_cast<std::size_t>(m.samples * m.outputs));
+    double x[alula::kMotionVariables], b[alula::kMeasuredOutputs];
+    std::copy(initial, initial + alula::kMotionVariables, x);
+    std::copy(bias, bias + alula::kMeasuredOutputs, b);
+    for (std::size_t k = 0; k < v.size(); ++k)
+      if (m.term_column[k] == c) v[k] += h * m.term_weight[k];
+    for (int i = 0; i < alula::kMotionVariables; ++i)
+      if (m.initial_column[i] == c) x[i] += h;
+    for (int o = 0; o < m.outputs; ++o)
+      if (m.bias_column[o] == c) b[o] += h;
+    alula::OutputErrorSums sums;
+    sums.predicted = y.data();
+    EXPECT_EQ(alula::fly_maneuver<axes>(m, v.data(), x, b, sums), m.samples);
+    return y;
+  }
+};
+
+template <Axes axes>
+void expect_slopes(Case c) {
+  c.m.table = &c.table;
+  const alula::MeasuredManeuver& m = c.m;
+  std::vector<double> J(static_cast<std::size_t>(m.samples * m.outputs * m.columns));
+  alula::OutputErrorSums sums;
+  sums.sensitivity = J.data();
+  ASSERT_EQ(alula::fly_maneuver<axes>(m, c.values.data(), c.initial, c.bias, sums), m.samples);
+  for (int p = 0; p < m.columns; ++p) {
+    const double h = 1e-5;
+    const std::vector<double> up = c.moved<axes>(p, h), down = c.moved<axes>(p, -h);
+    double largest = 0, apart = 0;
+    for (std::size_t i = 0; i < up.size(); ++i) {
+      const double slope = J[i * static_cast<std::size_t>(m.columns) + static_cast<std::size_t>(p)];
+      largest = std::max(largest, std::abs(slope));
+      apart = std::max(apart, std::abs((up[i] - down[i]) / (2 * h) - slope));
+    }
+    EXPECT_GT(largest, 0.0) << "parameter " << p;
+    // Central differences: rounding 1e-16 * 45 / 1e-5 and curvature of h^2
+    EXPECT_LT(apart, 1e-6 * largest + 1e-9) << "parameter " << p;
+  }
+}
+
+TEST(OutputError, SlopesAreThoseOfDifferences) {
+  expect_slopes<Axes::longitudinal>(Case(false, true, false));
+  expect_slopes<Axes::longitudinal>(Case(false, true, true));
+  expect_slopes<Axes::lateral>(Case(true, false, false));
+  expect_slopes<Axes::six>(Case(true, true, false));
+  expect_slopes<Axes::six>(Case(true, true, true));
+}
+
+TEST(OutputError, TheKernelsAgreeWhereBothServe) {
+  Case c(false, true, true);
+  c.m.table = &c.table;
+  for (int i : {2, 3, 5, 6})  // a symmetric motion
+    for (int k = 0; k < 150; ++k)
+      c.inputs[static_cast<std::size_t>(k * alula::kManeuverInputs + i)] = 0;
+  const auto small = c.moved<Axes::longitudinal>(-2, 0.0), large = c.moved<Axes::six>(-2, 0.0);
+  for (std::size_t i = 0; i < small.size(); ++i) EXPECT_NEAR(small[i], large[i], 1e-9);
+}
+
+TEST(OutputError, SumsAreThoseOfTheSlopesAndSkipWhatIsMissing) {
+  Case c(false, true, false);
+  c.m.table = &c.table;
+  c.measured[3] = c.measured[7 * 9 + 1] = std::nan("");
+  const auto& m = c.m;
+  const int k = m.columns, stride = alula::stride_of(k);
+  std::vector<double> J(static_cast<std::size_t>(m.samples * m.outputs * k)),
+      y(static_cast<std::size_t>(m.samples * m.outputs)),
+      information(static_cast<std::size_t>(m.outputs * k * stride)),
+      gradient(static_cast<std::size_t>(m.outputs * stride));
+  alula::OutputErrorSums sums;
+  sums.information = information.data();
+  sums.gradient = gradient.data();
+  sums.predicted = y.data();
+  sums.sensitivity = J.data();
+  alula::fly_maneuver<Axes::longitudinal>(m, c.values.data(), c.initial, c.bias, sums);
+  for (int o = 0; o < m.outputs; ++o) {
+    double squares = 0, slope = 0, element = 0;
+    int count = 0;
+    for (int n = 0; n < m.samples; ++n) {
+      const auto i = static_cast<std::size_t>(n * m.outputs + o);
+      if (std::isnan(c.measured[i])) continue;
+      const double e = c.measured[i] - y[i], *row = &J[i * static_cast<std::size_t>(k)];
+      squares += e * e;
+      slope += row[1] * e;
+      element += row[1] * row[2];
+      ++count;
+    }
+    EXPECT_EQ(sums.counts[o], count);
+    EXPECT_NEAR(sums.squares[o], squares, 1e-12 * squares);
+    EXPECT_NEAR(gradient[static_cast<std::size_t>(o * stride + 1)], slope,
+                1e-9 * (1 + std::abs(slope)));
+    EXPECT_NEAR(information[static_cast<std::size_t>((o * k + 1) * stride + 2)], element,
+                1e-9 * (1 + std::abs(element)));
+  }
+}
+
+TEST(OutputError, AMotionThatDivergesStops) {
+  Case c(false, true, false);
+  c.m.table = &c.table;
+  c.m.pull[alula::kMotionAlpha] = 0;
+  c.values[4] = 400.0;  // Cm_alpha
+  alula::OutputErrorSums sums;
+  const int flown =
+      alula::fly_maneuver<Axes::longitudinal>(c.m, c.values.data(), c.initial, c.bias, sums);
+  EXPECT_GT(flown, 0);
+  EXPECT_LT(flown, c.m.samples);
+}
+
+TEST(OutputError, FlyingAllocatesNothing) {
+  Case c(true, true, true);
+  c.m.table = &c.table;
+  alula::OutputErrorSums sums;
+  const long before = alula_test::allocations();
+  alula::fly_maneuver<Axes::six>(c.m, c.values.data(), c.initial, c.bias, sums);
+  EXPECT_EQ(alula_test::allocations(), before);
+  std::vector<int> control(10);  // the counter counts
+  EXPECT_GT(alula_test::allocations(), before);
+  EXPECT_EQ(control.size(), 10U);
+}
+
+}  // namespace
