@@ -8,7 +8,7 @@ of bias and scale error: state at the center + (reading - what it should have be
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,6 +20,7 @@ from alula.base.project import ReconstructSpec
 from alula.campaign.check import Checked
 from alula.flight import Flight, Motion
 from alula.identify import Reference, Thrust
+from alula.identify.carried import Shifts
 from alula.identify.measured_maneuver import MeasuredManeuver, measured_maneuver
 from alula.reconstruct import Reconstruction, Segment
 from alula.reconstruct.sensors import kind_of
@@ -54,8 +55,9 @@ def engines_of(flight: Flight, aircraft: Aircraft, motion: Motion) -> list[Thrus
 
 def measured_maneuvers(
     checked: Checked, reconstruction: Reconstruction
-) -> tuple[tuple[MeasuredManeuver, ...], tuple[Message, ...]]:
-    """Every reconstructed maneuver as output error takes it, with what is to be said of it.
+) -> tuple[tuple[MeasuredManeuver, ...], tuple[Message, ...], list[Shifts]]:
+    """Every reconstructed maneuver as output error takes it, with what is to be said of it and
+    how its readings move with what reconstruction is unsure of.
 
     Raises BadInput where mass properties are missing or an input is not a number.
     """
@@ -87,7 +89,36 @@ def measured_maneuvers(
                 gravity=spec.gravity,
             )
         )
-    return tuple(out), tuple(dict.fromkeys(said))
+    return tuple(out), tuple(dict.fromkeys(said)), reading_shifts(reconstruction, out)
+
+
+def reading_shifts(
+    reconstruction: Reconstruction, maneuvers: Sequence[MeasuredManeuver]
+) -> list[Shifts]:
+    """How the readings move, for each independent direction of the constants' uncertainty.
+
+    A bias b and scale error k that are off by db, dk move a corrected reading x by -(db + dk x).
+    """
+    if not reconstruction.constants:
+        return []
+    names = [c.name for c in reconstruction.constants]
+    size, turn = np.linalg.eigh(reconstruction.constants_cov)
+    out: list[Shifts] = []
+    for variance, direction in zip(size, turn.T, strict=True):
+        if variance <= 0.0:
+            continue
+        off = dict(zip(names, (np.sqrt(variance) * direction).tolist(), strict=True))
+        moved: dict[str, dict[str, Array]] = {}
+        for m in maneuvers:
+            tags = ("", f"[{m.maneuver.log}]", f"[{m.maneuver.id}]")
+            for name, x in m.outputs.items():
+                bias = sum(off.get(f"b_{name}{tag}", 0.0) for tag in tags)
+                scale = sum(off.get(f"k_{name}{tag}", 0.0) for tag in tags)
+                if bias or scale:
+                    moved.setdefault(m.maneuver.id, {})[name] = -(bias + scale * x)
+        if moved:
+            out.append(moved)
+    return out
 
 
 def sensor_readings(

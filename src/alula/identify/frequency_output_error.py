@@ -97,8 +97,8 @@ def identify_frequency_output_error(
     belongs = {**model.belongs, **{f"delay_{u}": u for u in delayed}}
     return assembled(
         "frequency-domain output error", [n.replace("(0)", "(0)-(T)") for n in names], belongs,
-        blocks, found, shown, model.rows, scales=scales, truth=truth, messages=(*said, *left_aside(records)),
-        ordinates=True,
+        blocks, found, shown, model.rows, scales=scales, truth=truth,
+        messages=(*said, *left_aside(records)), ordinates=True,
     )  # fmt: skip
 
 

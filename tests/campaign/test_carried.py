@@ -1,0 +1,60 @@
+"""The reconstruction's uncertainty in output error: the step against an estimate made anew."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from alula.campaign.check import check_project
+from alula.campaign.measured import measured_maneuvers
+from alula.identify.carried import carried
+from alula.identify.output_error import identify_output_error
+from alula.identify.output_error_problem import STATE_SETS, Setting
+from alula.reconstruct import reconstruct
+from cli.command import demo_files, small_project
+
+__all__ = ["demo_files"]
+
+
+def test_the_step_is_what_other_readings_give(demo_files: Path, tmp_path: Path) -> None:
+    project = small_project(demo_files, tmp_path / "project")
+    checked = check_project(str(project.path))
+    path = reconstruct(
+        checked.flights, checked.maneuvers, checked.aircraft, checked.project.reconstruct
+    )
+    (maneuver,), _, shifts = measured_maneuvers(checked, path)
+    models = checked.project.identify.models
+    setting = Setting(STATE_SETS["longitudinal"], ("V", "alpha", "theta", "q", "ax", "az"))
+
+    def identified(m):
+        return identify_output_error(
+            [m], models, states=setting.states, outputs=list(setting.outputs)
+        )
+
+    found = identified(maneuver)
+    id = maneuver.maneuver.id
+    strongest = max(shifts, key=lambda s: np.abs(s[id].get("alpha", np.zeros(1))).max())
+    moved = {n: x + strongest[id].get(n, 0.0) for n, x in maneuver.outputs.items()}
+    again = identified(replace(maneuver, outputs=moved))
+    wider = carried(found, [maneuver], models, [strongest], setting)
+    assert wider.uncertainty.endswith("reconstruction")
+    told = 0
+    for p, q, w in zip(found.parameters, again.parameters, wider.parameters, strict=True):
+        step = np.sqrt(max(w.se**2 - p.se**2, 0.0))
+        # linear to a percent of a standard error; the search ends within 1e-4 of one
+        assert abs(step - abs(q.value - p.value)) < 0.02 * p.se
+        assert w.ci95[1] - w.ci95[0] >= p.ci95[1] - p.ci95[0]
+        told += step > 0.1 * p.se
+    assert told > 0  # the direction matters to some parameter
+
+
+def test_nothing_to_carry_changes_nothing(demo_files: Path, tmp_path: Path) -> None:
+    project = small_project(demo_files, tmp_path / "project")
+    project.edit('filter = "ekf"', 'filter = "none"')
+    checked = check_project(str(project.path))
+    path = reconstruct(
+        checked.flights, checked.maneuvers, checked.aircraft, checked.project.reconstruct
+    )
+    assert measured_maneuvers(checked, path)[2] == []
