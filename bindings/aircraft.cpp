@@ -235,4 +235,5 @@ void bind_aircraft(nb::module_& m) {
       .def_prop_ro("input_count", [](const Aircraft&) { return alula::kFlightInputs; })
       .def_prop_ro("output_count", [](const Aircraft&) { return alula::kFlightOutputs; });
   bind_fly(c);
+  bind_fly_many(c);
 }

@@ -17,3 +17,4 @@ struct Aircraft {
 };
 
 void bind_fly(nb::class_<Aircraft>& c);
+void bind_fly_many(nb::class_<Aircraft>& c);

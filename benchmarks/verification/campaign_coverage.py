@@ -108,7 +108,7 @@ def worst(c: Covered) -> str:
 
 def campaign_coverage(quick: bool) -> tuple[str, bool]:
     """What was found, and whether it holds."""
-    runs, demo = (20, 4) if quick else (200, 40)
+    runs, demo = (20, 4) if quick else (200, 16)
     white, coloured = cover(runs, 0.0), cover(runs, MEMORY)
     regression = run_seeds(range(demo), workers=1)
     by = coverage(regression)

@@ -71,11 +71,12 @@ def flown(
     gains: Mapping[tuple[str, str], float] | None = None,
     substeps: int = 20,
     disturbed: float = 0.0,
+    follow: Mapping[str, Signal] | None = None,
 ) -> SimulatedFlight:
     """A maneuver from trimmed level flight. gains: of a pilot who holds what was trimmed.
 
     substeps: many, because he looks once a step, and what is recorded is a line between samples.
-    disturbed: pitch rate to start with, rad/s.
+    disturbed: pitch rate to start with, rad/s. follow: what he adds to what he holds, by sight.
     """
     start = trim(aircraft.airframe, aircraft.model, Condition(V, h))
     t = np.arange(round(seconds * rate) + 1) / rate
@@ -88,7 +89,10 @@ def flown(
     pilot = None
     if gains is not None:
         references = {sight: held.get(sight, 0.0) for _, sight in gains}
-        pilot = Pilot(gains, references)
+        wanted: dict[str, Array | float] = {**references}
+        for sight, change in (follow or {}).items():
+            wanted[sight] = references[sight] + change.value(t)
+        pilot = Pilot(gains, wanted)
     return fly(
         aircraft.airframe,
         aircraft.model,

@@ -1,4 +1,4 @@
-// Sine, cosine and arctangent of lanes: the errors stated in lanes.hpp, over special and random
+// Functions of lanes: the errors stated in lanes.hpp, over special and random
 // arguments, against the mathematics library in a longer type.
 #include <gtest/gtest.h>
 
@@ -98,6 +98,79 @@ TYPED_TEST(LaneMathematics, ArctangentOfNothingIsZero) {
   using L = Lanes<TypeParam, 4>;
   const L a = atan2(L(TypeParam(0)), L(TypeParam(0)));
   for (int j = 0; j < 4; ++j) EXPECT_EQ(a[j], TypeParam(0));
+}
+
+TYPED_TEST(LaneMathematics, ExponentialKeepsTheStatedError) {
+  using T = TypeParam;
+  using L = Lanes<T, 4>;
+  const T end = kDouble<T> ? T(708) : T(87);
+  std::vector<T> x = {T(0), -T(0), T(1), T(-1), end, -end, T(1e-30), T(-1e-9)};
+  std::mt19937 random(6);
+  for (const double size : {1e-6, 0.34, 1.0, 30.0, static_cast<double>(end)}) {
+    std::uniform_real_distribution<double> draw(-size, size);
+    for (int i = 0; i < 100000; ++i) x.push_back(static_cast<T>(draw(random)));
+  }
+  const long double bound = kDouble<T> ? 3e-16L : 2e-7L;  // as stated in lanes.hpp
+  long double worst = 0;
+  for (std::size_t i = 0; i < x.size(); i += 4) {
+    const L e = exp(L::load(&x[i]));
+    for (int j = 0; j < 4; ++j) {
+      const long double exact = std::exp(static_cast<long double>(x[i + j]));
+      worst = std::max(worst, std::abs(e[j] - exact) / exact);
+    }
+  }
+  EXPECT_LT(worst, bound);
+  EXPECT_GT(worst, 0);
+  const L beyond = exp(L(T(1e4))), held = exp(L(end));
+  EXPECT_EQ(beyond[0], held[0]);
+}
+
+TYPED_TEST(LaneMathematics, LogarithmKeepsTheStatedError) {
+  using T = TypeParam;
+  using L = Lanes<T, 4>;
+  using Limits = std::numeric_limits<T>;
+  std::vector<T> x = {T(1),          T(0.5),        T(2),          Limits::min(),
+                      Limits::max(), T(0.70710678), T(1.41421356), T(10)};
+  std::mt19937 random(7);
+  for (const double size : {1e-6, 0.3, 1.0, 30.0, kDouble<T> ? 700.0 : 80.0}) {
+    std::uniform_real_distribution<double> draw(-size, size);
+    for (int i = 0; i < 100000; ++i) x.push_back(static_cast<T>(std::exp(draw(random))));
+  }
+  const long double absolute = kDouble<T> ? 2e-16L : 1e-7L;  // as stated in lanes.hpp
+  const long double relative = kDouble<T> ? 3e-16L : 1e-7L;
+  long double worst = 0;
+  for (std::size_t i = 0; i < x.size(); i += 4) {
+    const L l = log(L::load(&x[i]));
+    for (int j = 0; j < 4; ++j) {
+      const long double exact = std::log(static_cast<long double>(x[i + j]));
+      worst = std::max(worst, std::abs(l[j] - exact) / (absolute + relative * std::abs(exact)));
+    }
+  }
+  EXPECT_LT(worst, 1);
+  EXPECT_GT(worst, 0);
+  const T none[] = {T(0), T(-1), Limits::infinity(), Limits::quiet_NaN()};
+  const L l = log(L::load(none));
+  for (int j = 0; j < 4; ++j) EXPECT_TRUE(std::isnan(l[j])) << j;
+}
+
+TYPED_TEST(LaneMathematics, MasksChooseLaneByLane) {
+  using T = TypeParam;
+  using L = Lanes<T, 4>;
+  using alula::all;
+  using alula::any;
+  const T values[] = {T(-1), T(0), T(2), std::numeric_limits<T>::quiet_NaN()};
+  const L x = L::load(values);
+  EXPECT_TRUE(any(x < L(T(0))));
+  EXPECT_FALSE(all(x < L(T(0))));
+  EXPECT_FALSE(any(x > L(T(2))));
+  EXPECT_TRUE(all((x == x) | (L(T(0)) == L(T(0)))));
+  EXPECT_FALSE(all(x == x));  // not where there is no number
+  EXPECT_TRUE(any((x >= L(T(0))) & (x > L(T(1)))));
+  const L chosen = select(x >= L(T(0)), x, L(T(7)));
+  const T expected[] = {T(7), T(0), T(2), T(7)};
+  for (int j = 0; j < 4; ++j) EXPECT_EQ(chosen[j], expected[j]);
+  const L counted = L::from([](int i) { return T(i * i); });
+  for (int j = 0; j < 4; ++j) EXPECT_EQ(counted[j], T(j * j));
 }
 
 TYPED_TEST(LaneMathematics, ANumberThatIsNoneStaysInItsLane) {

@@ -219,6 +219,14 @@ class AircraftModel:
         motion; x: 13 states or all.
         """
 
+    def fly_many(self, starts: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], controls: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], winds: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], logarithmic: bool, dt: float, substeps: int, states: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], outputs: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], inputs: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], flown: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu')], hold: bool = False, gusts: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)] | None = None) -> None:
+        """
+        Fly k flights side by side, each as `fly` would: starts (k, state_count), controls and
+        gusts (k or 1, n, 6), winds (k, 9): steady, shear, reference height, roughness, ground;
+        write states (k, n, state_count), outputs (k, n, 24), inputs (k, n, 12), and the numbers
+        of samples before a state stopped being finite into flown (k).
+        """
+
 def quaternion_from_euler(phi: float, theta: float, psi: float, out: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]) -> None:
     """Quaternion (4,), scalar first, of Euler angles 3-2-1, rad."""
 

@@ -9,7 +9,17 @@ import pytest
 
 from cli.command import alula
 
-COMMANDS = ("new", "check", "identify", "validate", "trim", "linearize", "modes", "schema")
+COMMANDS = (
+    "new",
+    "check",
+    "identify",
+    "compare",
+    "validate",
+    "trim",
+    "linearize",
+    "modes",
+    "schema",
+)
 HEAVY = ("numpy", "pandas", "scipy", "matplotlib", "pyarrow", "h5py", "alula._core", "alula.core")
 PROBE = """
 import sys

@@ -111,7 +111,8 @@ def test_python_page(tmp_path: Path, monkeypatch) -> None:
 
 
 @pytest.mark.parametrize(
-    "command", ["new", "check", "identify", "validate", "trim", "linearize", "modes", "schema"]
+    "command",
+    ["new", "check", "identify", "compare", "validate", "trim", "linearize", "modes", "schema"],
 )
 def test_every_option_is_on_the_page(command: str) -> None:
     page = (ROOT / "docs/command_line.md").read_text()

@@ -10,7 +10,7 @@ from urllib.parse import unquote
 import pytest
 
 from alula.base.project import ReconstructSpec
-from alula.campaign.job import IDENTIFIERS
+from alula.campaign.methods import IDENTIFIERS
 from alula.logs.reader import READERS
 from alula.reconstruct import METHODS
 
@@ -28,6 +28,9 @@ METHOD_PAGES = {
     "srukf": "square_root_filter.md",
     "ml": "maximum_likelihood.md",
     "ee": "equation_error.md",
+    "oe": "comparison.md",
+    "fe": "filter_error.md",
+    "fd": "frequency_domain.md",
 }
 
 

@@ -122,6 +122,22 @@ def test_known_noise_can_be_held():
     assert found["F_p"].value == pytest.approx(F, rel=0.2)  # one draw: 5 % deviation, 4 of them
 
 
+def test_control_that_stands_still_is_named():
+    record = flown(7)
+    still = np.zeros_like(record.inputs)
+    found = identify_filter_error(roll(), [replace(record, inputs=still)])
+    assert found["Lda"].verdict == "not_identifiable"
+    assert np.isnan(found["Lda"].value)
+    assert not found.identifiable
+
+
+def test_held_out_maneuver_is_left_aside_and_said():
+    held = replace(flown(8), id="b", held_out=True)
+    found = identify_filter_error(roll(), [flown(1), held])
+    assert "held_out" in [m.code for m in found.messages]
+    assert found["Lp"].value == identify_filter_error(roll(), [flown(1)])["Lp"].value
+
+
 def test_unknown_state_is_refused():
     with pytest.raises(BadInput, match="unknown_option"):
         identify_filter_error(roll(), [flown(6)], noisy=["q"])

@@ -144,6 +144,7 @@ def test_fixed_bounded_and_prior():
         fixed["Nr"]
     bounded = identify_linear_output_error(roll_yaw(), [record], bounds={"Lp": (-5.0, 0.0)})
     assert bounded["Lp"].value == -5.0
+    assert bounded["Lp"].verdict == "weak"
     assert "at_bound" in [m.code for m in bounded.messages]
     free = identify_linear_output_error(roll_yaw(), [record])
     sure = identify_linear_output_error(roll_yaw(), [record], priors={"Np": Prior(-0.6, 1e-4)})

@@ -13,6 +13,7 @@ from alula.base.messages import BadInput, Message, note, refuse
 from alula.campaign.options import Kind, checked_options, factors, priors_of
 from alula.identify import CoefficientData, Identification, Reference, identify_equation_error
 from alula.identify.bootstrap import BLOCK_OPTIONS, bootstrapped
+from alula.identify.flight_filter_error import STATES_OF, identify_flight_filter_error
 from alula.identify.frequency_regression import identify_frequency_regression
 from alula.identify.measured_maneuver import MeasuredManeuver
 from alula.identify.merge import merged
@@ -130,12 +131,27 @@ LATERAL_OUTPUTS = frozenset({"beta", "p", "r", "phi", "ay", "pdot", "rdot"})
 
 
 def _output_error(task: IdentifyTask) -> Identification:
-    """Longitudinal and lateral models each on the maneuvers of their aspect, or all together."""
+    return _by_outputs(task, identify_output_error, STATE_SETS)
+
+
+def _filter_error(task: IdentifyTask) -> Identification:
+    return _by_outputs(task, identify_flight_filter_error, STATES_OF)
+
+
+def _by_outputs(
+    task: IdentifyTask,
+    identify: Callable[..., Identification],
+    sets: Mapping[str, Sequence[str]],
+) -> Identification:
+    """Longitudinal and lateral models each on the maneuvers of their aspect, or all together.
+
+    sets: the states of a motion, by its name.
+    """
     options = dict(task.options)
     states = options.pop("states", "auto")
     asked = options.pop("outputs", None)
     if isinstance(states, str):
-        _one_of("states", states, ("auto", *STATE_SETS))
+        _one_of("states", states, ("auto", *sets))
     if "algorithm" in options:
         _one_of("algorithm", options["algorithm"], ("gauss_newton", "levenberg_marquardt"))
     options |= {k: f(options[k]) for k, f in (("tied", factors), ("priors", priors_of))
@@ -152,17 +168,17 @@ def _output_error(task: IdentifyTask) -> Identification:
     parts = _parts(task.models) if states == "auto" else [(_set_of(states), dict(task.models))]
     for name, models in parts:
         serving = _serving(maneuvers, models)
-        outputs = _outputs(name, states, asked, serving)
-        results.append(
-            identify_output_error(
-                serving,
-                models,
-                states=name if states == "auto" else states,
-                outputs=outputs,
-                **_of_part(options, models, outputs, alone=len(parts) == 1),
-                truth=task.truth,
-            )
+        flown = tuple(sets[name] if isinstance(states, str) else states)
+        outputs = _outputs(name, flown, asked, serving, split=states == "auto")
+        found = identify(
+            serving,
+            models,
+            states=flown,
+            outputs=outputs,
+            **_of_part(options, models, outputs, alone=len(parts) == 1),
+            truth=task.truth,
         )
+        results.append(replace(found, formulas=found.formulas or models))
     result = merged(results)
     return replace(result, messages=(*messages, *result.messages))
 
@@ -204,16 +220,21 @@ def _serving(
 
 def _outputs(
     name: str,
-    states: str | Sequence[str],
+    states: Sequence[str],
     asked: Sequence[str] | None,
     maneuvers: Sequence[MeasuredManeuver],
+    split: bool,
 ) -> list[str]:
-    """Those asked for, of this part; else the usual ones that every maneuver has readings of."""
+    """Those asked for, of this part; else the usual ones that every maneuver has readings of.
+
+    What is taken as measured and is no state cannot be compared: the model does not make it.
+    """
     if asked is not None:
-        if states != "auto":
+        if not split:
             return list(asked)
         return [n for n in asked if (n in LATERAL_OUTPUTS) == (name == "lateral")]
-    found = [n for n in OUTPUTS[name] if all(n in m.outputs for m in maneuvers)]
+    made = [n for n in OUTPUTS[name] if n in states or n not in STATE_SETS["six"]]
+    found = [n for n in made if all(n in m.outputs for m in maneuvers)]
     if not found:
         raise refuse(
             "no_output",
@@ -233,8 +254,10 @@ def _of_part(
         return dict(options)
 
     def mine(name: str) -> bool:
-        head = name.removeprefix("b_").split("[")[0].split("(")[0]
-        return head in outputs or head in STATE_NAMES & set(outputs) or head.split("_")[0] in models
+        head = name.split("[")[0].split("(")[0]
+        for kind in ("b_", "F_", "sigma_"):
+            head = head.removeprefix(kind)
+        return head in outputs or head.split("_")[0] in models
 
     out = dict(options)
     for key in ("start", "fixed", "tied", "bounds", "priors", "stabilize", "noise"):
@@ -242,12 +265,10 @@ def _of_part(
             out[key] = {n: v for n, v in out[key].items() if mine(n)}
     if not out.get("noise", True):
         del out["noise"]
-    if "biases" in out:
-        out["biases"] = [n for n in out["biases"] if n in outputs]
+    for key in ("biases", "noisy"):
+        if key in out:
+            out[key] = [n for n in out[key] if n in outputs]
     return out
-
-
-STATE_NAMES = frozenset(STATE_SETS["six"])
 
 
 def _one_of(name: str, value: str, known: Sequence[str]) -> None:
@@ -298,6 +319,22 @@ IDENTIFIERS: Mapping[str, Method] = {
             "scales": "numbers",
         },
         _output_error,
+    ),
+    "fe": Method(
+        "filter error",
+        {
+            "states": "names",
+            "outputs": "list",
+            "noisy": "list",
+            "start": "numbers",
+            "fixed": "numbers",
+            "bounds": "pairs",
+            "priors": "pairs",
+            "common_constant": "flag",
+            "algorithm": "text",
+            "scales": "numbers",
+        },
+        _filter_error,
     ),
     "fd": Method(
         "frequency-domain regression",

@@ -28,6 +28,7 @@ class Method(StrEnum):
 
     ee = "ee"
     oe = "oe"
+    fe = "fe"
     fd = "fd"
 
 

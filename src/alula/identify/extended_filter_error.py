@@ -24,6 +24,7 @@ from alula.identify.noise_search import (
     NoisyProblem,
     first_process_noises,
     first_sensor_noises,
+    left_aside,
     search_noises,
     without_noises,
 )
@@ -89,7 +90,7 @@ def identify_extended_filter_error(
     problem = ExtendedFilter(each, learn, unknowns, driven, fixed or {}, start)
     return search_noises(
         method, problem, model.outputs, model.rows, learn, bounds or {}, priors or {}, algorithm,
-        scales or {}, truth or {},
+        scales or {}, truth or {}, left_aside(records),
     )  # fmt: skip
 
 

@@ -29,6 +29,7 @@ from alula.identify.noise_search import (
     NoisyProblem,
     first_process_noises,
     first_sensor_noises,
+    left_aside,
     search_noises,
     without_noises,
 )
@@ -76,7 +77,7 @@ def identify_filter_error(
     problem = FilterError(model, learn, unknowns, driven, gain, fixed or {}, start or {})
     return search_noises(
         "filter error", problem, model.outputs, model.rows, learn, bounds or {}, priors or {},
-        algorithm, scales or {}, truth or {},
+        algorithm, scales or {}, truth or {}, left_aside(records),
     )  # fmt: skip
 
 

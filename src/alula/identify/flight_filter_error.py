@@ -114,7 +114,8 @@ def flight_functions(
         for j, (c, term, _) in enumerate(terms):
             if c != LIFT and LIFT in C:
                 known[LIFT] = C[LIFT]
-            C[c] = C.get(c, np.zeros(1)) + p[..., j] * term.values(known)
+            share = p[..., j] * term.values(known)
+            C[c] = C[c] + share if c in C else share
         for c in m.coefficients:
             if c not in C:
                 C[c] = u[..., at[f"measured {c}"]]

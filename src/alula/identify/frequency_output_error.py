@@ -24,6 +24,7 @@ from alula.identify.linear_model import LinearModel
 from alula.identify.linear_output_error import learned, prior_blocks
 from alula.identify.linear_record import LinearRecord, Unknowns
 from alula.identify.linear_start import first_values
+from alula.identify.noise_search import left_aside
 from alula.identify.optimizer import Algorithm, Likelihood, Point, minimize, with_prior
 from alula.identify.result import Identification
 
@@ -96,8 +97,8 @@ def identify_frequency_output_error(
     belongs = {**model.belongs, **{f"delay_{u}": u for u in delayed}}
     return assembled(
         "frequency-domain output error", [n.replace("(0)", "(0)-(T)") for n in names], belongs,
-        blocks, found, shown, model.rows, scales=scales, truth=truth, messages=said,
-        ordinates=True,
+        blocks, found, shown, model.rows, scales=scales, truth=truth,
+        messages=(*said, *left_aside(records)), ordinates=True,
     )  # fmt: skip
 
 

@@ -139,6 +139,11 @@ def assembled(
     if not found.converged:
         return _failed(method, names, belongs, found, (*messages, *said))
     parameters = tuple(
+        # a bound's value is not the data's
+        replace(p, verdict="weak") if p.name in at_bound and p.verdict == "ok" else p
+        for p in parameters
+    )
+    parameters = tuple(
         replace(p, coefficient=belongs.get(p.name.split("[")[0], p.name.split("(")[0]))
         for p in parameters
     )

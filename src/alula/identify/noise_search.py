@@ -90,6 +90,7 @@ def search_noises(
     algorithm: Algorithm,
     scales: Mapping[str, float],
     truth: Mapping[str, float],
+    aside: Sequence[Message] = (),
 ) -> Identification:
     """The maximum of the likelihood with error bars and verdicts, noises on their natural scale."""
     likelihood = InnovationLikelihood(problem.run)
@@ -119,9 +120,25 @@ def search_noises(
     true = {n: float(np.log(v)) if n in problem.logarithmic else v for n, v in truth.items()}
     result = assembled(
         method, names, problem.belongs, blocks, found, shown, rows,
-        scales=scales, truth=true, messages=said,
+        scales=scales, truth=true, messages=(*aside, *said),
     )  # fmt: skip
     return natural_scale(result, problem.logarithmic)
+
+
+def left_aside(records: Sequence[LinearRecord]) -> list[Message]:
+    """A note on held-out maneuvers: predictions one sample ahead would tell nothing of a model."""
+    held = [r.id for r in records if r.held_out]
+    if not held:
+        return []
+    return [
+        note(
+            "held_out",
+            where=", ".join(held),
+            expected="maneuvers to learn from",
+            found="maneuvers that are held out: they were left aside",
+            do="Nothing; judge the model on them by flying it.",
+        )
+    ]
 
 
 def first_sensor_noises(

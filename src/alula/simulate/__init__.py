@@ -3,6 +3,7 @@
 from alula.simulate.airframe import Airframe, airframe_of
 from alula.simulate.condition import Condition
 from alula.simulate.fly import SimulatedFlight, fly, initial_state
+from alula.simulate.fly_many import fly_many
 from alula.simulate.handling import judge
 from alula.simulate.inputs import Pulse, Signal, Steps, Sum, bank_to_bank, doublet, input_3211
 from alula.simulate.linearize import Linearization, LinearModel, linearize
@@ -38,6 +39,7 @@ __all__ = [
     "every",
     "flow_angles",
     "fly",
+    "fly_many",
     "initial_state",
     "input_3211",
     "judge",

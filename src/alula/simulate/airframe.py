@@ -21,7 +21,7 @@ from alula.base.arrays import Array, frozen
 from alula.base.messages import refuse
 from alula.core import core
 from alula.model import AeroModel, to_table
-from alula.simulate.wind import Wind
+from alula.simulate.wind import Wind, as_wind
 
 GRAVITY = 9.80665  # m/s2, standard
 CONTROLS = ("de", "da", "dr", "df", "dt")
@@ -106,12 +106,17 @@ def core_model(
         position = np.asarray(fuel.position, dtype=np.float64) - cg
         plant.set_fuel(float(fuel.mass), position, _rows(fuel.inertia))
     if wind is not None:
-        w = wind if isinstance(wind, Wind) else Wind(np.asarray(wind, dtype=np.float64))
-        plant.set_wind(
-            _vector(w.steady), _vector(w.shear), w.reference_height, w.logarithmic, w.roughness,
-            w.ground,
-        )  # fmt: skip
+        set_wind(plant, wind)
     return plant
+
+
+def set_wind(plant: Any, wind: Array | Wind) -> None:
+    """Another wind for the core's AircraftModel, see `core_model`."""
+    w = as_wind(wind)
+    plant.set_wind(
+        _vector(w.steady), _vector(w.shear), w.reference_height, w.logarithmic, w.roughness,
+        w.ground,
+    )  # fmt: skip
 
 
 def airframe_of(

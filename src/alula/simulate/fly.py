@@ -122,6 +122,32 @@ def fly(
     the start. Raises BadInput where time is not even, a control is unknown or not finite, or the
     flight diverges.
     """
+    t, dt = even_times(t)
+    n = len(t)
+    inputs = control_rows(controls, n)
+    plant = core_model(airframe, model, wind, gravity, stall=stall)
+    extra: dict[str, Any] = {} if pilot is None else pilot.arguments(n)
+    if gusts is not None:
+        extra["gusts"] = gust_rows(gusts, n)
+    if turbulence is not None:
+        extra |= turbulence.arguments(model.reference.b, (n - 1) * substeps + 1)
+    start = full_start(plant, x0, inputs[0])
+    messages: tuple[Message, ...] = ()
+    if check:
+        A = plant.jacobian(start, inputs[0])[0]
+        messages = check_step(A, dt / substeps)
+    states, outputs = np.empty((n, plant.state_count)), np.empty((n, plant.output_count))
+    flown_inputs = np.empty((n, plant.input_count))
+    flown = plant.fly(start, inputs, dt, substeps, states, outputs, flown_inputs, hold, **extra)
+    if flown < n:
+        raise refuse("diverged", **divergence("simulation", float(t[flown])))
+    maneuver = maneuver or Maneuver("flight", "simulation", "simulated", float(t[0]), float(t[-1]))
+    names = plant.further_states
+    return as_flight(airframe, model, maneuver, t, names, states, outputs, flown_inputs, messages)
+
+
+def even_times(t: Array) -> tuple[Array, float]:
+    """Times (n,), s, and their step; raises BadInput where they are not even."""
     t = np.asarray(t, dtype=np.float64)
     dt = (t[-1] - t[0]) / (len(t) - 1) if len(t) > 1 else 0.0
     if not dt > 0.0 or np.max(np.abs(np.diff(t) - dt)) > 1e-6 * dt:
@@ -132,38 +158,21 @@ def fly(
             found=f"{len(t)} times, mean step {dt:g} s",
             do="Give evenly spaced times.",
         )
-    n = len(t)
-    inputs = _inputs(controls, n)
-    plant = core_model(airframe, model, wind, gravity, stall=stall)
-    extra: dict[str, Any] = {} if pilot is None else pilot.arguments(n)
-    if gusts is not None:
-        extra["gusts"] = _gusts(gusts, n)
-    if turbulence is not None:
-        extra["turbulence"] = np.array([model.reference.b, turbulence.W20, turbulence.sigma])
-        extra["normals"] = turbulence.normals((n - 1) * substeps + 1)
-    start = _start(plant, x0, inputs[0])
-    messages: tuple[Message, ...] = ()
-    if check:
-        A = plant.jacobian(start, inputs[0])[0]
-        messages = check_step(A, dt / substeps)
-    states, outputs = np.empty((n, plant.state_count)), np.empty((n, plant.output_count))
-    flown_inputs = np.empty((n, plant.input_count))
-    flown = plant.fly(start, inputs, dt, substeps, states, outputs, flown_inputs, hold, **extra)
-    if flown < n:
-        raise refuse(
-            "diverged",
-            where=f"simulation, t = {t[flown]:g} s",
-            expected="a finite state",
-            found="a state that grew without bound",
-            do="Check the model's signs, the mass properties and the inputs.",
-        )
-    maneuver = maneuver or Maneuver("flight", "simulation", "simulated", float(t[0]), float(t[-1]))
-    names = plant.further_states
-    return _as_flight(airframe, model, maneuver, t, names, states, outputs, flown_inputs, messages)
+    return t, float(dt)
 
 
-def _start(plant: Any, x0: Array, u: Array) -> Array:
-    """All states to start from."""
+def divergence(where: str, t: float) -> dict[str, str]:
+    """What is said of a flight whose state stopped being finite at t, s."""
+    return {
+        "where": f"{where}, t = {t:g} s",
+        "expected": "a finite state",
+        "found": "a state that grew without bound",
+        "do": "Check the model's signs, the mass properties and the inputs.",
+    }
+
+
+def full_start(plant: Any, x0: Array, u: Array) -> Array:
+    """All states to start from, of 13 or all, under input u (6,)."""
     start = np.array(x0, dtype=np.float64)
     if start.shape not in ((BODY_STATES,), (plant.state_count,)):
         raise refuse(
@@ -180,7 +189,8 @@ def _start(plant: Any, x0: Array, u: Array) -> Array:
     return settled
 
 
-def _inputs(controls: Mapping[str, Array | float], n: int) -> Array:
+def control_rows(controls: Mapping[str, Array | float], n: int) -> Array:
+    """Rows (n, 6) of the core's first inputs; raises BadInput for what is not one."""
     out = np.zeros((n, len(CONTROLS)))
     for name, values in controls.items():
         if name not in CONTROLS:
@@ -204,7 +214,8 @@ def _inputs(controls: Mapping[str, Array | float], n: int) -> Array:
     return out
 
 
-def _gusts(gusts: Array, n: int) -> Array:
+def gust_rows(gusts: Array, n: int) -> Array:
+    """Gusts (n, 6) as the core takes them; raises BadInput for others."""
     out = np.ascontiguousarray(gusts, dtype=np.float64)
     if out.shape != (n, 6) or not np.isfinite(out).all():
         raise refuse(
@@ -217,7 +228,7 @@ def _gusts(gusts: Array, n: int) -> Array:
     return out
 
 
-def _as_flight(
+def as_flight(
     airframe: Airframe,
     model: AeroModel,
     maneuver: Maneuver,
@@ -228,6 +239,12 @@ def _as_flight(
     inputs: Array,
     messages: tuple[Message, ...],
 ) -> SimulatedFlight:
+    """What the core wrote at times t (n,) as a flight; names: of the further states.
+
+    states and inputs belong to the flight from here on and can no more be written to.
+    """
+    states.setflags(write=False)
+    inputs.setflags(write=False)
     euler, R, where = _attitudes(states, airframe.earth)
     ax, ay, az, pdot, qdot, rdot, V, alpha, beta, mach, rho = (frozen(c) for c in outputs.T[:11])
     p, q, r = (frozen(c) for c in states.T[10:13])
@@ -259,9 +276,9 @@ def _as_flight(
         air_velocity=frozen(V[:, None] * air),
         mach=mach,
         states=further,
-        inputs=frozen(inputs),
+        inputs=inputs,
         engine_force=frozen(outputs[:, 17:20]),
         engine_moment=frozen(outputs[:, 20:23]),
-        plant_states=frozen(states),
+        plant_states=states,
         messages=(*messages, *outside_validity(model, motion, mach)),
     )

@@ -29,6 +29,13 @@ class Wind:
     ground: float = 0.0
 
 
+def as_wind(wind: Array | Wind | None) -> Wind:
+    """A `Wind` of what may be given for one: (3,) NED m/s, the way it blows to; None: calm."""
+    if wind is None:
+        return Wind()
+    return wind if isinstance(wind, Wind) else Wind(np.asarray(wind, dtype=np.float64))
+
+
 @dataclass(frozen=True)
 class CosineGust:
     """A discrete gust of one minus cosine (MIL-F-8785C, 3.7.1.3), body axes.
@@ -74,3 +81,10 @@ class Turbulence:
     def normals(self, steps: int) -> Array:
         """(steps, 8) standard normal numbers."""
         return np.random.default_rng(self.seed).standard_normal((steps, NORMALS))
+
+    def arguments(self, span: float, steps: int) -> dict[str, Array]:
+        """What the core's `fly` takes of it, for a span (m) and a number of integration steps."""
+        return {
+            "turbulence": np.array([span, self.W20, self.sigma]),
+            "normals": self.normals(steps),
+        }

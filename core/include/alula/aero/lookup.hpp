@@ -143,4 +143,13 @@ constexpr S lookup(const Lookup<T>& table, const S& a, const S& b, const S& c) {
   return sum;
 }
 
+// Each lane for itself.
+template <class T, int W>
+Lanes<T, W> lookup(const Lookup<T>& table, const Lanes<T, W>& a, const Lanes<T, W>& b,
+                   const Lanes<T, W>& c) {
+  T value[W];
+  for (int i = 0; i < W; ++i) value[i] = lookup(table, a[i], b[i], c[i]);
+  return Lanes<T, W>::load(value);
+}
+
 }  // namespace alula

@@ -44,9 +44,9 @@ S attached_part(const Stall<T>& s, const S& alpha, Wing wing = Wing::whole) {
   using std::exp;
   const T star = s.alpha_star + T(0.5) * T(static_cast<int>(wing)) * s.alpha_star_difference;
   const S z = (T(2) * s.a1) * (alpha - star);
-  const bool behind = value_of(z) > T(0);
-  const S e = exp(behind ? S(-z) : z);
-  return behind ? S(e / (T(1) + e)) : S(S(T(1)) / (T(1) + e));
+  const auto behind = value_of(z) > T(0);
+  const S e = exp(select(behind, S(-z), z));
+  return select(behind, e, S(T(1))) / (T(1) + e);
 }
 
 // dX/dt, 1/s; alpha: local one of that part of the wing; alphadot: rad/s, as the forces at the
@@ -65,8 +65,8 @@ S local_alpha(const Stall<T>& s, const Vec3<S>& v_air, const Vec3<S>& rates, Win
   using std::atan2;
   const T y = T(static_cast<int>(wing)) * s.y_station;
   const S down = v_air.z + y * rates.x, forward = v_air.x - y * rates.z;
-  if (value_of(down) == T(0) && value_of(forward) == T(0)) return S(0);
-  return atan2(down, forward);
+  const auto none = (value_of(down) == T(0)) & (value_of(forward) == T(0));
+  return select(none, S(0), S(atan2(down, forward)));
 }
 
 // Below this X the root is replaced by a parabola with the same value and slope there.
@@ -79,11 +79,9 @@ S root_of_separation(const S& X) {
   using std::sqrt;
   using T = decltype(value_of(X));
   const S inside = limited(X, T(0), T(1));
-  if (value_of(inside) < T(kSmallX)) {
-    const S x = T(1.0 / kSmallX) * inside;
-    return (T(0.5) * std::sqrt(T(kSmallX))) * (x * (T(3) - x));
-  }
-  return sqrt(inside);
+  const S x = T(1.0 / kSmallX) * inside;
+  const S parabola = (T(0.5) * sqrt(T(kSmallX))) * (x * (T(3) - x));
+  return select(value_of(inside) < T(kSmallX), parabola, S(sqrt(inside)));
 }
 
 // What separation takes from the lift: Kirchhoff's CL = CL_alpha (alpha - alpha_0) ((1 + sqrt

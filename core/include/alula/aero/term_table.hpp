@@ -119,9 +119,9 @@ constexpr void fill_slots(const TermTable& table, S* slots, const Lookup<T>* tab
     S& out = slots[kVariables + i];
     switch (step.operation) {
       case Operation::multiply: out = a * slots[step.b]; break;
-      case Operation::absolute: out = a < S(0) ? -a : a; break;
-      case Operation::ramp: out = a > S(step.knot) ? a - S(step.knot) : S(0); break;
-      case Operation::sign: out = a > S(0) ? S(1) : a < S(0) ? S(-1) : S(0); break;
+      case Operation::absolute: out = select(a < S(0), S(-a), a); break;
+      case Operation::ramp: out = select(a > S(step.knot), S(a - S(step.knot)), S(0)); break;
+      case Operation::sign: out = select(a > S(0), S(1), select(a < S(0), S(-1), S(0))); break;
       case Operation::lookup:
         out = lookup(tables[step.table], a, slots[step.b], slots[step.c]);
         break;

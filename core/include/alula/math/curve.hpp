@@ -87,4 +87,24 @@ constexpr S curve(const Curve<T>& c, const S& x) {
   return p[0] + d * (p[1] + d * (p[2] + d * p[3]));
 }
 
+// In lanes each knot is compared with all of them, then each lane takes its own piece.
+template <class T, int W>
+Lanes<T, W> curve(const Curve<T>& c, const Lanes<T, W>& x) {
+  using L = Lanes<T, W>;
+  const L none(T(0)), one(T(1));
+  L passed = none;
+  for (unsigned i = 1; i < static_cast<unsigned>(c.count); ++i)
+    passed += select(x < L(c.knot[i]), none, one);
+  unsigned piece[W];
+  for (int w = 0; w < W; ++w) piece[w] = static_cast<unsigned>(passed[w]);
+  const auto coefficient = [&](unsigned k) {
+    return L::from([&](int w) { return c.piece[piece[w]][k]; });
+  };
+  const L d = x - L::from([&](int w) { return c.knot[piece[w]]; });
+  const L line = coefficient(0) + coefficient(1) * d;
+  if (c.count == 0) return L(T(0));
+  const L bent = d * d * (coefficient(2) + d * coefficient(3));
+  return line + select(x < L(c.knot[0]), L(T(0)), bent);
+}
+
 }  // namespace alula

@@ -1,8 +1,11 @@
 #pragma once
-// W numbers side by side in one vector register (or several): sigma points, parameter sets.
-// Sine, cosine and arctangent are branch-free, so every lane takes the same way.
+// W numbers side by side in one vector register (or several): sigma points, parameter sets,
+// flights. Sine, cosine, arctangent, exponential and logarithm are branch-free, so every lane takes
+// the same way. A comparison gives a mask, for which `select` chooses lane by lane.
 #include <cmath>
 #include <cstdint>
+#include <limits>
+#include <utility>
 
 namespace alula {
 
@@ -12,7 +15,9 @@ inline constexpr int kLanes = 4;
 inline constexpr int kLanes = 2;
 #endif
 
-#if defined(__GNUC__)
+// ALULA_PLAIN_LANES: for tests of what compilers without vector types get.
+#if defined(__GNUC__) && !defined(ALULA_PLAIN_LANES)
+#define ALULA_VECTOR_LANES 1
 namespace detail {
 template <class T>
 struct IntegerOf;
@@ -69,8 +74,18 @@ struct Lanes {
   friend Lanes operator/(Lanes a, Lanes b) { return a.v / b.v; }
   friend Lanes operator-(Lanes a) { return -a.v; }
 
+  // Lane i is f(i).
+  template <class F>
+  static Lanes from(F&& f) {
+    return [&f]<int... i>(std::integer_sequence<int, i...>) {
+      return Lanes(Vector{f(i)...});
+    }(std::make_integer_sequence<int, W>());
+  }
+
   friend Mask operator<(Lanes a, Lanes b) { return a.v < b.v; }
   friend Mask operator>(Lanes a, Lanes b) { return a.v > b.v; }
+  friend Mask operator>=(Lanes a, Lanes b) { return a.v >= b.v; }
+  friend Mask operator==(Lanes a, Lanes b) { return a.v == b.v; }
   friend Lanes select(Mask m, Lanes a, Lanes b) { return m ? a.v : b.v; }
 
   Mask bits() const { return (Mask)v; }
@@ -94,12 +109,13 @@ struct Lanes {
   using Integer = std::int64_t;
   struct Mask {
     Integer m[W];
-    friend Mask operator&(Mask a, Integer b) {
-      for (auto& x : a.m) x &= b;
+    Integer operator[](int i) const { return m[i]; }
+    friend Mask operator&(Mask a, const Mask& b) {
+      for (int i = 0; i < W; ++i) a.m[i] &= b.m[i];
       return a;
     }
-    friend Mask operator^(Mask a, Mask b) {
-      for (int i = 0; i < W; ++i) a.m[i] ^= b.m[i];
+    friend Mask operator|(Mask a, const Mask& b) {
+      for (int i = 0; i < W; ++i) a.m[i] |= b.m[i];
       return a;
     }
   };
@@ -133,6 +149,28 @@ struct Lanes {
   ALULA_LANES_OPERATOR(*)
   ALULA_LANES_OPERATOR(/)
 #undef ALULA_LANES_OPERATOR
+#define ALULA_LANES_COMPARISON(op)                            \
+  friend Mask operator op(const Lanes& a, const Lanes& b) {   \
+    Mask r;                                                   \
+    for (int i = 0; i < W; ++i) r.m[i] = -(a.v[i] op b.v[i]); \
+    return r;                                                 \
+  }
+  ALULA_LANES_COMPARISON(<)
+  ALULA_LANES_COMPARISON(>)
+  ALULA_LANES_COMPARISON(>=)
+  ALULA_LANES_COMPARISON(==)
+#undef ALULA_LANES_COMPARISON
+  friend Lanes select(const Mask& m, const Lanes& a, const Lanes& b) {
+    Lanes r;
+    for (int i = 0; i < W; ++i) r.v[i] = m.m[i] ? a.v[i] : b.v[i];
+    return r;
+  }
+  template <class F>
+  static Lanes from(F&& f) {
+    Lanes r;
+    for (int i = 0; i < W; ++i) r.v[i] = f(i);
+    return r;
+  }
   friend Lanes operator-(const Lanes& a) { return Lanes(T(0)) - a; }
   friend Lanes sqrt(const Lanes& a) {
     Lanes r;
@@ -159,7 +197,10 @@ struct Trig<double> {
   static constexpr double half_pi_1 = 1.57079625129699707031;
   static constexpr double half_pi_2 = 7.54978941586159635335e-8;
   static constexpr double half_pi_3 = 5.39030252995776476554e-15;
-  static constexpr int sign_shift = 62;  // from bit 1 to the sign bit
+  static constexpr int sign_shift = 62;      // from bit 1 to the sign bit
+  static constexpr int exponent_shift = 52;  // from bit 0 to the exponent
+  static constexpr std::int64_t exponent_of_one = 1023;
+  static constexpr double largest_exponent = 708.0;  // e to plus or minus this is a normal number
 };
 template <>
 struct Trig<float> {
@@ -168,6 +209,9 @@ struct Trig<float> {
   static constexpr float half_pi_2 = 4.837512969970703125e-4f;
   static constexpr float half_pi_3 = 7.54978995489188216e-8f;
   static constexpr int sign_shift = 30;
+  static constexpr int exponent_shift = 23;
+  static constexpr std::int32_t exponent_of_one = 127;
+  static constexpr float largest_exponent = 87.0f;
 };
 }  // namespace detail
 
@@ -176,7 +220,7 @@ struct Trig<float> {
 template <class T, int W>
 inline void sincos(Lanes<T, W> x, Lanes<T, W>& sine, Lanes<T, W>& cosine) {
   using L = Lanes<T, W>;
-#if defined(__GNUC__)
+#if defined(ALULA_VECTOR_LANES)
   using K = detail::Trig<T>;
   const L shifted = x * L(T(0.63661977236758134308)) + L(K::magic);
   const auto quadrant = shifted.bits();
@@ -214,14 +258,15 @@ inline void sincos(Lanes<T, W> x, Lanes<T, W>& sine, Lanes<T, W>& cosine) {
 template <class T, int W>
 inline Lanes<T, W> atan2(Lanes<T, W> y, Lanes<T, W> x) {
   using L = Lanes<T, W>;
-#if defined(__GNUC__)
+#if defined(ALULA_VECTOR_LANES)
   const L zero(T(0)), one(T(1));
   const L ay = select(y < zero, -y, y), ax = select(x < zero, -x, x);
-  const auto steep = ay > ax;  // the quotient stays within [0, 1]
-  const L large = select(steep, ay, ax);
-  const L t = select(steep, ax, ay) / select(large > zero, large, one);
-  const auto upper = t > L(T(0.4142135623730950488));  // tan(pi/8)
-  const L u = select(upper, (t - one) / (t + one), t);
+  const auto steep = ay > ax;  // the quotient t stays within [0, 1]
+  const L large = select(steep, ay, ax), small = select(steep, ax, ay);
+  const auto upper =
+      small > L(T(0.4142135623730950488)) * large;  // tan(pi/8); then (t - 1)/(t + 1)
+  const L u = select(upper, small - large, small) /
+              select(large > zero, select(upper, small + large, large), one);
   const L z = u * u;
   L p = L(T(-8.750608600031904122785e-1));
   p = p * z + L(T(-1.615753718733365076637e1));
@@ -242,6 +287,96 @@ inline Lanes<T, W> atan2(Lanes<T, W> y, Lanes<T, W> x) {
   for (int i = 0; i < W; ++i) r.v[i] = std::atan2(y.v[i], x.v[i]);
   return r;
 #endif
+}
+
+// e^x: relative error below 3e-16 (2e-7 for float). Beyond plus or minus 708 (float: 87) the value
+// there. Rational approximation on [-ln(2)/2, ln(2)/2] by the coefficients of the Cephes library.
+template <class T, int W>
+inline Lanes<T, W> exp(Lanes<T, W> x) {
+  using L = Lanes<T, W>;
+  using K = detail::Trig<T>;
+  const L end(K::largest_exponent);
+  x = select(x > end, end, select(x < -end, -end, x));
+#if defined(ALULA_VECTOR_LANES)
+  const L shifted = x * L(T(1.44269504088896340736)) + L(K::magic);
+  const L k = shifted - L(K::magic);
+  const L r = (x - k * L(T(6.93145751953125e-1))) - k * L(T(1.42860682030941723212e-6));
+  const L z = r * r;
+  L p = L(T(1.26177193074810590878e-4));
+  p = p * z + L(T(3.02994407707441961300e-2));
+  p = r * (p * z + L(T(1)));
+  L q = L(T(3.00198505138664455042e-6));
+  q = q * z + L(T(2.52448340349684104192e-3));
+  q = q * z + L(T(2.27265548208155028766e-1));
+  q = q * z + L(T(2));
+  const L power = L::from_bits((shifted.bits() + K::exponent_of_one) << K::exponent_shift);
+  return (L(T(1)) + L(T(2)) * p / (q - p)) * power;
+#else
+  return L::from([&x](int i) { return std::exp(x.v[i]); });
+#endif
+}
+
+// Natural logarithm of normal numbers above zero: error below 2e-16 and 3e-16 of the value (float:
+// 1e-7 both); NaN for all others. Rational approximation on [sqrt(1/2), sqrt(2)] by the
+// coefficients of the Cephes library.
+template <class T, int W>
+inline Lanes<T, W> log(Lanes<T, W> x) {
+  using L = Lanes<T, W>;
+#if defined(ALULA_VECTOR_LANES)
+  using K = detail::Trig<T>;
+  using Limits = std::numeric_limits<T>;
+  const L one(T(1));
+  const auto bits = x.bits();
+  const auto inside = (x > L(T(0))) & (x < L(Limits::infinity()));
+  const auto exponent = (bits >> K::exponent_shift) - K::exponent_of_one;
+  L m = L::from_bits(bits - (exponent << K::exponent_shift));
+  L e = L::from_bits(exponent + L(K::magic).bits()) - L(K::magic);
+  const auto upper = m > L(T(1.41421356237309504880));
+  m = select(upper, L(T(0.5)) * m, m) - one;
+  e = select(upper, e + one, e);
+  const L z = m * m;
+  L p = L(T(1.01875663804580931796e-4));
+  p = p * m + L(T(4.97494994976747001425e-1));
+  p = p * m + L(T(4.70579119878881725854e0));
+  p = p * m + L(T(1.44989225341610930846e1));
+  p = p * m + L(T(1.79368678507819816313e1));
+  p = p * m + L(T(7.70838733755885391666e0));
+  L q = m + L(T(1.12873587189167450590e1));
+  q = q * m + L(T(4.52279145837532221105e1));
+  q = q * m + L(T(8.29875266912776603211e1));
+  q = q * m + L(T(7.11544750618563894466e1));
+  q = q * m + L(T(2.31251620126765340583e1));
+  const L rest = m * (z * p / q) - e * L(T(2.121944400546905827679e-4)) - L(T(0.5)) * z;
+  return select(inside, (m + rest) + e * L(T(0.693359375)), L(Limits::quiet_NaN()));
+#else
+  return L::from([&x](int i) {
+    using Limits = std::numeric_limits<T>;
+    return x.v[i] > 0 && x.v[i] < Limits::infinity() ? std::log(x.v[i]) : Limits::quiet_NaN();
+  });
+#endif
+}
+
+// The same choices for plain numbers, where a comparison gives a bool: one text serves both. What
+// is skipped by `any` and `all` must be what `select` would not have taken.
+template <class S>
+constexpr S select(bool m, const S& a, const S& b) {
+  return m ? a : b;
+}
+constexpr bool any(bool m) { return m; }
+constexpr bool all(bool m) { return m; }
+template <class Mask>
+  requires requires(const Mask& m) { m[0]; }
+inline bool any(const Mask& m) {
+  auto r = m[0];
+  for (unsigned i = 1; i < sizeof(Mask) / sizeof r; ++i) r |= m[i];
+  return r != 0;
+}
+template <class Mask>
+  requires requires(const Mask& m) { m[0]; }
+inline bool all(const Mask& m) {
+  auto r = m[0];
+  for (unsigned i = 1; i < sizeof(Mask) / sizeof r; ++i) r &= m[i];
+  return r != 0;
 }
 
 }  // namespace alula

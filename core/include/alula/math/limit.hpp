@@ -6,9 +6,7 @@ namespace alula {
 
 template <class S, class T>
 constexpr S limited(const S& x, const T& low, const T& high) {
-  if (value_of(x) < low) return S(low);
-  if (value_of(x) > high) return S(high);
-  return x;
+  return select(value_of(x) < low, S(low), select(value_of(x) > high, S(high), x));
 }
 
 }  // namespace alula

@@ -42,34 +42,37 @@ void body_rate(const FlightState<S>& x, const Place<S>& at, const Loads<S>& load
 template <class S, class T>
 Vec3<S> wind_slope(const Wind<T>& wind, const S& height) {
   Vec3<S> slope{S(wind.shear.x), S(wind.shear.y), S(wind.shear.z)};
+  if (!wind.logarithmic) return slope;
+  using std::log;
   const S z = height - wind.ground;
-  if (wind.logarithmic && value_of(z) > T(kLowestProfile) && value_of(z) < T(kHighestProfile)) {
-    const T reference =
-        limited(wind.reference_height - wind.ground, T(kLowestProfile), T(kHighestProfile));
-    slope = slope + (T(1) / std::log(reference / wind.roughness) / z) * wind.steady;
-  }
-  return slope;
+  const T low(kLowestProfile), high(kHighestProfile);
+  const T reference = limited(wind.reference_height - wind.ground, low, high);
+  const auto grows = (value_of(z) > low) & (value_of(z) < high);
+  const S factor = S(1) / (log(reference / wind.roughness) * select(grows, z, S(1)));
+  return slope + select(grows, factor, S(0)) * wind.steady;
 }
 
 // How fast the angle of attack changes, rad/s; the gust's own rate of change is not known and left
 // out, wind that grows with height is in.
-template <class S, class T>
-S alpha_rate(const FlightState<S>& x, const AircraftModel<T>& a, const Place<S>& at,
-             const Loads<S>& load, const FlightState<S>& rate) {
+template <class S, class A>
+S alpha_rate(const FlightState<S>& x, const Wind<A>& wind, const Place<S>& at, const Loads<S>& load,
+             const FlightState<S>& rate) {
   const Vec3<S> v{x[7], x[8], x[9]}, w{x[10], x[11], x[12]};
   const Vec3<S> dv{rate[7], rate[8], rate[9]};
   const S climb = -dot(Vec3<S>{at.R_BN.row[0].z, at.R_BN.row[1].z, at.R_BN.row[2].z}, v);
   const Vec3<S> dv_air =
-      dv + cross(w, v - load.v_air) - at.R_BN * (climb * wind_slope(a.wind, at.height));
+      dv + cross(w, v - load.v_air) - at.R_BN * (climb * wind_slope(wind, at.height));
   const S plane = load.v_air.x * load.v_air.x + load.v_air.z * load.v_air.z;
-  if (!(plane > S(kLeastAirspeed * kLeastAirspeed))) return S(0);
-  return (load.v_air.x * dv_air.z - load.v_air.z * dv_air.x) / plane;
+  const auto flows = plane > S(kLeastAirspeed * kLeastAirspeed);
+  const S turn = load.v_air.x * dv_air.z - load.v_air.z * dv_air.x;
+  return select(flows, S(turn / select(flows, plane, S(1))), S(0));
 }
 
 // Rates of all states, from the loads.
-template <class S, class T>
+template <class S, class T, class A>
 void state_rate(const FlightState<S>& x, const FlightInput<S>& u, const AircraftModel<T>& a,
-                const Place<S>& at, const Loads<S>& load, FlightState<S>& rate) {
+                const Wind<A>& wind, const Place<S>& at, const Loads<S>& load,
+                FlightState<S>& rate) {
   const StateLayout& layout = a.layout;
   rate.length = layout.size;
   if (!a.burns) {
@@ -83,7 +86,7 @@ void state_rate(const FlightState<S>& x, const FlightInput<S>& u, const Aircraft
     if (layout.engine[i] >= 0) rate[layout.engine[i]] = load.engine_rate[i];
   if (layout.charge >= 0) rate[layout.charge] = load.current;
   if (a.stalls) {
-    const S alpha_dot = alpha_rate(x, a, at, load, rate);
+    const S alpha_dot = alpha_rate(x, wind, at, load, rate);
     const int halves = separation_states(a.stall);
     for (int i = 0; i < halves; ++i) {
       const Wing wing = halves == 1 ? Wing::whole : i == 0 ? Wing::left : Wing::right;
@@ -98,7 +101,8 @@ void state_rate(const FlightState<S>& x, const FlightInput<S>& u, const Aircraft
     const auto j = static_cast<unsigned>(i);
     if (place >= 0) rate[place] = actuator_rate(a.actuators[j], x[place], u[j]);
   }
-  if (layout.fuel >= 0) rate[layout.fuel] = x[layout.fuel] < S(a.fuel.mass) ? load.fuel_flow : S(0);
+  if (layout.fuel >= 0)
+    rate[layout.fuel] = select(x[layout.fuel] < S(a.fuel.mass), load.fuel_flow, S(0));
 }
 
 // The outputs that belong to loads and to the rate that came of them.
@@ -140,12 +144,30 @@ FlightOutput<S> outputs_of(const FlightState<S>& x, const AircraftModel<T>& a, c
           load.thrust};
 }
 
+// The rate in a given wind.
+template <class S, class T, class A>
+void derivative_in(const Wind<A>& wind, const FlightState<S>& x, const FlightInput<S>& u,
+                   const AircraftModel<T>& params, FlightState<S>& rate) {
+  const Place<S> at = place(x, params.earth, params.gravity);
+  state_rate(x, u, params, wind, at, loads(x, u, params, wind, at), rate);
+}
+
+// The same with the outputs.
+template <class S, class T, class A>
+void derivative_and_outputs_in(const Wind<A>& wind, const FlightState<S>& x,
+                               const FlightInput<S>& u, const AircraftModel<T>& params,
+                               FlightState<S>& rate, FlightOutput<S>& y) {
+  const Place<S> at = place(x, params.earth, params.gravity);
+  const Loads<S> load = loads(x, u, params, wind, at);
+  state_rate(x, u, params, wind, at, load, rate);
+  y = outputs_of(x, params, load, rate);
+}
+
 // dx/dt = f(t, x, u, params); nothing in it depends on time.
 template <class S, class T>
 void derivative(T /*t*/, const FlightState<S>& x, const FlightInput<S>& u,
                 const AircraftModel<T>& params, FlightState<S>& rate) {
-  const Place<S> at = place(x, params.earth, params.gravity);
-  state_rate(x, u, params, at, loads(x, u, params, at), rate);
+  derivative_in(params.wind, x, u, params, rate);
 }
 
 template <class S, class T>
@@ -161,10 +183,7 @@ template <class S, class T>
 void derivative_and_outputs(const FlightState<S>& x, const FlightInput<S>& u,
                             const AircraftModel<T>& params, FlightState<S>& rate,
                             FlightOutput<S>& y) {
-  const Place<S> at = place(x, params.earth, params.gravity);
-  const Loads<S> load = loads(x, u, params, at);
-  state_rate(x, u, params, at, load, rate);
-  y = outputs_of(x, params, load, rate);
+  derivative_and_outputs_in(params.wind, x, u, params, rate, y);
 }
 
 }  // namespace alula

@@ -2,6 +2,8 @@
 // U.S. Standard Atmosphere 1976 (NOAA-S/T 76-1562), up to 86 km.
 #include <cmath>
 
+#include "alula/math/dual.hpp"
+
 namespace alula {
 
 template <class S>
@@ -23,6 +25,11 @@ struct Layer {
   double temperature;  // K at the base
   double lapse;        // K/m
   double pressure;     // Pa at the base, continued from the layer below
+  // Pressure is that at the base times (T/T base)^power e^(decay above), one of them zero.
+  constexpr double power() const { return lapse == 0.0 ? 0.0 : -kGravity / (kGasConstant * lapse); }
+  constexpr double decay() const {
+    return lapse == 0.0 ? -kGravity / (kGasConstant * temperature) : 0.0;
+  }
 };
 inline constexpr int kLayers = 7;
 inline constexpr Layer kLayer[kLayers] = {
@@ -52,16 +59,30 @@ Air<S> standard_atmosphere(const S& h) {
   using std::log;
   using std::sqrt;
   const S height = geopotential_height(h);
-  int i = 0;
-  while (i + 1 < kLayers && height > S(kLayer[i + 1].base)) ++i;
-  const Layer& layer = kLayer[i];
-  const S above = height - S(layer.base);
+  // Layer by layer, all of them only for what flies that high.
+  struct {
+    S base, temperature, lapse, inverse, power, decay, pressure;
+  } at{S(kLayer[0].base),    S(kLayer[0].temperature),
+       S(kLayer[0].lapse),   S(1.0 / kLayer[0].temperature),
+       S(kLayer[0].power()), S(kLayer[0].decay()),
+       S(kLayer[0].pressure)};
+  for (int i = 1; i < kLayers; ++i) {
+    const Layer& next = kLayer[i];
+    const auto higher = height > S(next.base);
+    if (!any(higher)) break;
+    at.base = select(higher, S(next.base), at.base);
+    at.temperature = select(higher, S(next.temperature), at.temperature);
+    at.lapse = select(higher, S(next.lapse), at.lapse);
+    at.inverse = select(higher, S(1.0 / next.temperature), at.inverse);
+    at.power = select(higher, S(next.power()), at.power);
+    at.decay = select(higher, S(next.decay()), at.decay);
+    at.pressure = select(higher, S(next.pressure), at.pressure);
+  }
+  const S above = height - at.base;
   Air<S> air;
-  air.temperature = S(layer.temperature) + S(layer.lapse) * above;
-  const S exponent = layer.lapse == 0.0 ? S(-kGravity / (kGasConstant * layer.temperature)) * above
-                                        : S(-kGravity / (kGasConstant * layer.lapse)) *
-                                              log(air.temperature * S(1.0 / layer.temperature));
-  air.pressure = S(layer.pressure) * exp(exponent);
+  air.temperature = at.temperature + at.lapse * above;
+  const S exponent = at.power * log(air.temperature * at.inverse) + at.decay * above;
+  air.pressure = at.pressure * exp(exponent);
   air.density = air.pressure / (S(kGasConstant) * air.temperature);
   air.speed_of_sound = sqrt(S(kHeatRatio * kGasConstant) * air.temperature);
   return air;

@@ -1,5 +1,6 @@
 #pragma once
 // How burned fuel changes mass, center of gravity and inertia.
+#include "alula/math/limit.hpp"
 #include "alula/motion/rigid_body.hpp"
 
 namespace alula {
@@ -31,7 +32,7 @@ struct BurnedMass {
 template <class S, class T>
 BurnedMass<S> after_burning(const MassProperties<T>& loaded, const FuelLoad<T>& fuel,
                             const S& used) {
-  const S burned = used < S(0) ? S(0) : used > S(fuel.mass) ? S(fuel.mass) : used;
+  const S burned = limited(used, T(0), fuel.mass);
   const S part = burned * (T(1) / fuel.mass);
   const S mass = S(loaded.mass) - burned;
   const Vec3<S> at = S(1) * fuel.position;

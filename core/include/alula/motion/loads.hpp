@@ -62,7 +62,8 @@ void add_aerodynamics(const FlightState<S>& x, const FlightInput<S>& u, const Ai
   using std::sqrt;
   const Vec3<S>&v = out.v_air, &w = out.w_air;
   const S speed_squared = dot(v, v);
-  if (!(speed_squared > S(kLeastAirspeed * kLeastAirspeed))) {
+  const auto flows = speed_squared > S(kLeastAirspeed * kLeastAirspeed);
+  if (!any(flows)) {
     out.flow = {S(0), S(0), S(0)};
     out.mach = S(0);
     for (S& c : out.coefficients) c = S(0);
@@ -89,8 +90,10 @@ void add_aerodynamics(const FlightState<S>& x, const FlightInput<S>& u, const Ai
   C = a.rows.rows > 0 ? coefficients(a.rows, slots) : coefficients(a.table, a.values.data(), slots);
 
   const S plane = sqrt(v.x * v.x + v.z * v.z);
-  const bool along_y = !(plane > S(kLeastAirspeed));  // then alpha is taken as zero
-  const S cosine = along_y ? S(1) : v.x / plane, sine = along_y ? S(0) : v.z / plane;
+  const auto ahead = plane > S(kLeastAirspeed);  // else alpha is taken as zero
+  const S inverse = S(1) / plane;
+  const S cosine = select(ahead, S(inverse * v.x), S(1));
+  const S sine = select(ahead, S(inverse * v.z), S(0));
   if (a.stalls) add_stall(x, a, sine, cosine, out);
   S CX = C[0], CZ = C[2];
   if (a.stability_axes) {
@@ -103,6 +106,13 @@ void add_aerodynamics(const FlightState<S>& x, const FlightInput<S>& u, const Ai
                                 pressure_area * a.b * C[5]};
   out.force = out.force + aero;
   out.moment = out.moment + about_reference + cross(a.reference_point, aero);
+  if (all(flows)) return;
+  // Flights side by side, some of them without flow.
+  const auto only = [&flows](S& value) { value = select(flows, value, S(0)); };
+  for (S* value : {&out.flow.V, &out.flow.alpha, &out.flow.beta, &out.mach, &out.force.x,
+                   &out.force.y, &out.force.z, &out.moment.x, &out.moment.y, &out.moment.z})
+    only(*value);
+  for (S& c : C) only(c);
 }
 
 // Adds what the engines do. w: rates against inertial space.
@@ -130,15 +140,16 @@ void add_engines(const FlightState<S>& x, const FlightInput<S>& u, const Aircraf
   out.moment = out.moment + out.engine_moment;
 }
 
-template <class S, class T>
+// wind: of the model, or flights side by side each their own.
+template <class S, class T, class A>
 Loads<S> loads(const FlightState<S>& x, const FlightInput<S>& u, const AircraftModel<T>& a,
-               const Place<S>& at) {
+               const Wind<A>& wind, const Place<S>& at) {
   const Vec3<S> v{x[7], x[8], x[9]}, w{x[10], x[11], x[12]};
   const Vec3<S> gust{u[kGustInput], u[kGustInput + 1], u[kGustInput + 2]};
   const Vec3<S> gust_rates{u[kGustInput + 3], u[kGustInput + 4], u[kGustInput + 5]};
   Loads<S> out;
   out.air = standard_atmosphere(at.height);
-  out.v_air = v - at.R_BN * wind_at(a.wind, at.height) - gust;
+  out.v_air = v - at.R_BN * wind_at(wind, at.height) - gust;
   out.w_air = w - at.earth_rate - gust_rates;
   out.force = out.moment = {S(0), S(0), S(0)};
   add_aerodynamics(x, u, a, out);

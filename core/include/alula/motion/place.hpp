@@ -20,15 +20,15 @@ struct Place {
 
 template <class S, class T>
 Place<S> place(const FlightState<S>& x, Earth earth, T flat_gravity) {
+  const Quaternion<S> q{x[3], x[4], x[5], x[6]};
+  if (earth == Earth::flat)  // in place: to set it to zero and to copy the matrix takes longer
+    return {earth_to_body(q),
+            earth_to_body(q),
+            -x[2],
+            gravity_in_body(earth_to_body(q), S(flat_gravity)),
+            {S(0), S(0), S(0)}};
   Place<S> at;
-  at.R_BE = earth_to_body(Quaternion<S>{x[3], x[4], x[5], x[6]});
-  if (earth == Earth::flat) {
-    at.R_BN = at.R_BE;
-    at.height = -x[2];
-    at.gravity = gravity_in_body(at.R_BE, S(flat_gravity));
-    at.earth_rate = {S(0), S(0), S(0)};
-    return at;
-  }
+  at.R_BE = earth_to_body(q);
   const Vec3<S> r{x[0], x[1], x[2]};
   const Geodetic<S> over = geodetic(r);
   const Mat3<S> R_NE = north_east_down(over);

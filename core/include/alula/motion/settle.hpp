@@ -38,7 +38,7 @@ void settle(const AircraftModel<T>& a, const FlightInput<T>& u, FlightState<T>& 
     x[layout.actuator[i]] = limited(u[static_cast<unsigned>(i)], actuator.low, actuator.high);
   }
   const Place<T> at = place(x, a.earth, a.gravity);
-  const Loads<T> load = loads(x, u, a, at);
+  const Loads<T> load = loads(x, u, a, a.wind, at);
   if (a.stalls) {
     const int halves = separation_states(a.stall);
     for (int i = 0; i < halves; ++i) {

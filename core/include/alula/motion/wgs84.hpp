@@ -4,6 +4,7 @@
 // Constants: NIMA TR8350.2, 3rd ed., Tables 3.1 and 3.3; J2 as in NASA/TM-2015-218675.
 #include <cmath>
 
+#include "alula/math/dual.hpp"
 #include "alula/math/quaternion.hpp"
 
 namespace alula {
@@ -53,10 +54,10 @@ Geodetic<S> geodetic(const Vec3<S>& r) {
   place.height = p * cosine + r.z * sine - S(kRadius) * sqrt(S(1) - S(kE2) * (sine * sine));
   place.sin_latitude = sine;
   place.cos_latitude = cosine;
-  const bool on_axis = !(p > S(2e-6));
+  const auto off_axis = p > S(2e-6);
   const S inverse = S(1) / p;
-  place.sin_longitude = on_axis ? S(0) : inverse * r.y;
-  place.cos_longitude = on_axis ? S(1) : inverse * r.x;
+  place.sin_longitude = select(off_axis, S(inverse * r.y), S(0));
+  place.cos_longitude = select(off_axis, S(inverse * r.x), S(1));
   return place;
 }
 

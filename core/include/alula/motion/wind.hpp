@@ -31,8 +31,7 @@ Vec3<S> wind_at(const Wind<T>& wind, const S& height) {
     const T low(kLowestProfile), high(kHighestProfile);
     const T reference = limited(wind.reference_height - wind.ground, low, high);
     const S z = limited(height - wind.ground, low, high);
-    const S factor =
-        log((T(1) / wind.roughness) * z) * (T(1) / std::log(reference / wind.roughness));
+    const S factor = log((T(1) / wind.roughness) * z) * (T(1) / log(reference / wind.roughness));
     out = factor * wind.steady;
   }
   return out + above * wind.shear;

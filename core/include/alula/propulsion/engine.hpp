@@ -77,7 +77,8 @@ constexpr EngineLoads<S> engine_loads(const Engine<T>& e, const S& state, const 
     }
     out.thrust = air_loads.thrust;
     out.state_rate = (T(1) / turning) * (shaft - air_loads.torque);
-    if (!(value_of(state) > T(0)) && value_of(out.state_rate) < T(0)) out.state_rate = S(0);
+    const auto turns = (value_of(state) > T(0)) | (value_of(out.state_rate) > T(0));
+    out.state_rate = select(turns, out.state_rate, S(0));
     along = -e.propeller.sense * (air_loads.torque + carried * out.state_rate);
     momentum = (e.propeller.sense * carried) * state;
   } else if (e.kind == EngineKind::turbofan) {

@@ -47,12 +47,12 @@ constexpr PistonLoads<S> piston_loads(const Piston<T>& e, const S& omega, const 
   const S speed = e.reduction * omega;
   const S sigma = T(1.0 / kSeaLevelDensity) * density;
   S full = curve(e.torque, speed) * ((T(1) + e.power_loss) * sigma - e.power_loss);
-  if (value_of(full) < T(0)) full = S(0);
+  full = select(value_of(full) < T(0), S(0), full);
   const S opening = e.idle + (T(1) - e.idle) * limited(throttle, T(0), T(1));
   const S friction = e.friction * friction_sense(speed, T(kFrictionSpeed));
   const S torque = opening * (full + e.friction) - friction;
   const S flow = e.consumption * (opening * full * speed);
-  return {e.reduction * torque, value_of(flow) < T(0) ? S(0) : flow};
+  return {e.reduction * torque, select(value_of(flow) < T(0), S(0), flow)};
 }
 
 // What resists a change of the propeller's speed, kg m2: Dittrich's J_P with the crankshaft's

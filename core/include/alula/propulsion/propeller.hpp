@@ -22,16 +22,22 @@ struct PropellerLoads {
 // n^2 times a coefficient over J. Outside the knots the coefficient is a line in J, and n^2 J is
 // n V/D, so nothing is divided by n there: zero where the propeller stands, with finite slopes.
 template <class S, class T>
-constexpr S times_speed_squared(const Curve<T>& c, const S& n, const S& V_over_D) {
+constexpr S times_speed_squared(const Curve<T>& c, const S& n, const S& V_over_D, const S& J) {
   if (c.count == 0) return S(0);
-  const T speed = value_of(n), advance = value_of(V_over_D);
-  const bool beyond = !(advance < c.last() * speed), before = advance < c.first() * speed;
-  if (beyond || before || !(speed > T(0))) {
-    const auto& line = c.piece[static_cast<unsigned>(before && !beyond ? 0 : c.count - 1)];
-    const T knot = before && !beyond ? c.first() : c.last();
-    return n * (n * (line[0] - line[1] * knot) + line[1] * V_over_D);
+  const auto speed = value_of(n), advance = value_of(V_over_D);
+  const auto between =
+      (advance < c.last() * speed) & (advance >= c.first() * speed) & (speed > T(0));
+  S outside(0);
+  if (!all(between)) {
+    const auto& low = c.piece[0];
+    const auto& high = c.piece[static_cast<unsigned>(c.count - 1)];
+    const auto before = (advance < c.first() * speed) & (advance < c.last() * speed);
+    const S at_zero =
+        select(before, S(low[0] - low[1] * c.first()), S(high[0] - high[1] * c.last()));
+    outside = n * (n * at_zero + select(before, S(low[1]), S(high[1])) * V_over_D);
   }
-  return n * n * curve(c, S(V_over_D / n));
+  if (!any(between)) return outside;
+  return select(between, S(n * n * curve(c, J)), outside);
 }
 
 // omega: rad/s, axial_speed: of the hub against the air along the direction, m/s, density: kg/m3.
@@ -41,13 +47,13 @@ template <class S, class T>
 constexpr PropellerLoads<S> propeller_loads(const Propeller<T>& p, const S& omega,
                                             const S& axial_speed, const S& density) {
   constexpr double kTurn = 6.283185307179586;
-  if (value_of(omega) < T(0)) return {S(0), S(0)};
-  const S n = T(1.0 / kTurn) * omega;
+  const S n = T(1.0 / kTurn) * select(value_of(omega) < T(0), S(0), omega);
   const S V_over_D = (T(1) / p.diameter) * axial_speed;
   const T D2 = p.diameter * p.diameter;
   const S scale = (D2 * D2) * density;
-  return {scale * times_speed_squared(p.CT, n, V_over_D),
-          T(1.0 / kTurn) * p.diameter * scale * times_speed_squared(p.CP, n, V_over_D)};
+  const S J = V_over_D / select(value_of(n) > T(0), n, S(1));
+  return {scale * times_speed_squared(p.CT, n, V_over_D, J),
+          T(1.0 / kTurn) * p.diameter * scale * times_speed_squared(p.CP, n, V_over_D, J)};
 }
 
 }  // namespace alula

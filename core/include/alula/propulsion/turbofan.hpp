@@ -24,10 +24,12 @@ constexpr S turbofan_thrust(const Turbofan<T>& e, const S& power, const S& mach,
   const S middle = lookup(e.military, mach, height, none);
   const S fraction = limited(power, T(0), T(1));
   if (e.maximum.axes == 0) return low + fraction * (middle - low);
-  if (!(value_of(fraction) > e.military_at))
-    return low + ((T(1) / e.military_at) * fraction) * (middle - low);
+  const auto beyond = value_of(fraction) > e.military_at;
+  const S dry = low + ((T(1) / e.military_at) * fraction) * (middle - low);
+  if (!any(beyond)) return dry;
   const S high = lookup(e.maximum, mach, height, none);
-  return middle + ((T(1) / (T(1) - e.military_at)) * (fraction - e.military_at)) * (high - middle);
+  const S part = (T(1) / (T(1) - e.military_at)) * (fraction - e.military_at);
+  return select(beyond, S(middle + part * (high - middle)), dry);
 }
 
 // Rate of power, 1/s, for a throttle 0..1.

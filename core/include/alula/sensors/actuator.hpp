@@ -25,8 +25,9 @@ constexpr S actuator_rate(const Actuator<T>& a, const S& position, const S& comm
     const T half = T(0.5) * a.dead_band;
     error -= limited(error, -half, half);
   }
-  const bool down = value_of(error) < T(0) && a.tau_down > T(0);
-  const S rate = (T(1) / (down ? a.tau_down : a.tau)) * error;
+  S rate = (T(1) / a.tau) * error;
+  if (a.tau_down > T(0))
+    rate = select(value_of(error) < T(0), S((T(1) / a.tau_down) * error), rate);
   return a.rate_limit > T(0) ? limited(rate, -a.rate_limit, a.rate_limit) : rate;
 }
 

@@ -1,0 +1,101 @@
+"""The linear equations of flight against slopes of the nonlinear ones."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from alula.base.messages import BadInput
+from alula.flight import Maneuver
+from alula.identify import Reference
+from alula.identify.flight_filter_error import _record, flight_functions
+from alula.identify.linear_flight import SteadyFlight, linear_flight_model
+from alula.identify.measured_maneuver import STATES, MeasuredManeuver
+
+G, V, M, RHO, S, B, C = 9.80665, 55.0, 1100.0, 1.1, 16.0, 11.0, 1.5
+INERTIA = np.array([[1500.0, 0.0, -150.0], [0.0, 1900.0, 0.0], [-150.0, 0.0, 3000.0]])
+ALPHA, CLIMB, THRUST = 0.06, 0.04, 1800.0
+QS = 0.5 * RHO * V**2 * S
+DERIVATIVES = {
+    "CD_alpha": 0.3, "CD_de": 0.02, "CL_alpha": 5.1, "CL_q": 6.0, "CL_de": 0.35,
+    "Cm_alpha": -1.1, "Cm_q": -14.0, "Cm_de": -1.4,
+    "CY_beta": -0.6, "CY_p": -0.05, "CY_r": 0.25, "CY_dr": 0.18, "Cl_beta": -0.08, "Cl_p": -0.5,
+    "Cl_r": 0.15, "Cl_da": -0.2, "Cl_dr": 0.01, "Cn_beta": 0.07, "Cn_p": -0.06, "Cn_r": -0.12,
+    "Cn_da": 0.01, "Cn_dr": -0.08,
+}  # fmt: skip
+FORMULAS = {
+    "CD": "1 + alpha + de", "CL": "1 + alpha + qhat + de", "Cm": "1 + alpha + qhat + de",
+    "CY": "beta + phat + rhat + dr", "Cl": "beta + phat + rhat + da + dr",
+    "Cn": "beta + phat + rhat + da + dr",
+}  # fmt: skip
+
+
+def nonlinear(states):
+    """Functions and inputs of a maneuver that is nothing but the steady flight."""
+    n = 3
+    steady = dict.fromkeys(STATES, 0.0) | {"V": V, "alpha": ALPHA, "theta": ALPHA + CLIMB}
+    m = MeasuredManeuver(
+        maneuver=Maneuver("steady", "log", "", 0.0, 1.0),
+        t=np.arange(n) * 0.1,
+        outputs={"q": np.zeros(n)},
+        motion={k: np.full(n, v) for k, v in steady.items()},
+        controls={k: np.zeros(n) for k in ("de", "da", "dr")},
+        rho=np.full(n, RHO),
+        reference=Reference(S, B, C, np.zeros(3)),
+        mass=M,
+        inertia=INERTIA,
+        speed_of_sound=np.full(n, 340.0),
+        force=np.tile([THRUST, 0.0, 0.0], (n, 1)),
+        moment=np.zeros((n, 3)),
+        arm=np.zeros(3),
+    )
+    functions = flight_functions(m, FORMULAS, states, ["q"])
+    trim = {
+        "CD_0": (THRUST * np.cos(ALPHA) - M * G * np.sin(CLIMB)) / QS - 0.3 * ALPHA,
+        "CL_0": (M * G * np.cos(CLIMB) - THRUST * np.sin(ALPHA)) / QS - 5.1 * ALPHA,
+        "Cm_0": 1.1 * ALPHA,
+    }
+    values = {**DERIVATIVES, **trim}
+    p = np.array([values[name] for name in functions.parameters])
+    x = np.array([steady[s] for s in states])
+    return functions, x, _record(m, ["q"]).inputs[0], p
+
+
+@pytest.mark.parametrize(
+    ("states", "names", "controls"),
+    [
+        (("V", "alpha", "q", "theta"), ("CD", "CL", "Cm"), ("de",)),
+        (("beta", "p", "r", "phi"), ("CY", "Cl", "Cn"), ("da", "dr")),
+    ],
+)
+def test_entries_are_the_slopes_of_the_nonlinear_equations(states, names, controls):
+    functions, x, u, p = nonlinear(states)
+    np.testing.assert_allclose(functions.derivative(x, u, p), 0.0, atol=1e-12)  # it is steady
+    steady = SteadyFlight(V, ALPHA, ALPHA + CLIMB, RHO, M, INERTIA, S, B, C, THRUST, G)
+    model = linear_flight_model(
+        steady, {c: FORMULAS[c] for c in names}, controls=controls, trim=False
+    )
+    matrices = model.at(np.array([DERIVATIVES[n] for n in model.parameters]))
+    h = 1e-6
+    for i in range(len(x)):
+        step = np.eye(len(x))[i] * h
+        slope = functions.derivative(x + step, u, p) - functions.derivative(x - step, u, p)
+        # rounding of accelerations of 10 over 2e-6
+        np.testing.assert_allclose(matrices.A[:, i], slope / (2 * h), atol=1e-7)
+    place = {"de": 8, "da": 9, "dr": 10}
+    for j, control in enumerate(controls):
+        step = np.zeros(len(u))
+        step[place[control]] = h
+        slope = functions.derivative(x, u + step, p) - functions.derivative(x, u - step, p)
+        np.testing.assert_allclose(matrices.B[:, j], slope / (2 * h), atol=1e-7)
+
+
+def test_constants_and_refusals():
+    steady = SteadyFlight(V, ALPHA, ALPHA, RHO, M, INERTIA, S, B, C)
+    model = linear_flight_model(steady, {"Cm": "1 + alpha + de"}, controls=["de"])
+    assert set(model.parameters) == {"Cm_alpha", "Cm_de", "V_0", "alpha_0", "q_0"}
+    assert model.belongs["Cm_alpha"] == "qdot"
+    with pytest.raises(BadInput, match="not_linear"):
+        linear_flight_model(steady, {"Cm": "alpha^2"}, controls=["de"])
+    with pytest.raises(BadInput, match="unknown_coefficient"):
+        linear_flight_model(steady, {"Cm": "alpha", "Cn": "beta"}, controls=["de"])
