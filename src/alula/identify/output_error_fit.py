@@ -18,6 +18,7 @@ from alula.identify.output_error_problem import FlightProblem, Setting
 from alula.model import AeroModel
 
 Covariance = Literal["diagonal", "full"]
+CLOSE = 5e-4  # standard errors that the next step would take: no digit told would change
 PULLS = (2.0, 10.0, 40.0)  # 1/s, of a first search where the start values diverge
 
 
@@ -112,11 +113,11 @@ def _search(
     low = np.array([bounds.get(n, (-np.inf, np.inf))[0] for n in problem.names])
     high = np.array([bounds.get(n, (-np.inf, np.inf))[1] for n in problem.names])
     if not priors:
-        return minimize(likelihood, start, algorithm=algorithm, lower=low, upper=high)
+        return minimize(likelihood, start, algorithm=algorithm, lower=low, upper=high, close=CLOSE)
     mean = np.array([priors[n].mean if n in priors else 0.0 for n in problem.names])
     weight = np.array([priors[n].se ** -2 if n in priors else 0.0 for n in problem.names])
     joint = with_prior(likelihood, mean, np.diag(weight))
-    return minimize(joint, start, algorithm=algorithm, lower=low, upper=high)
+    return minimize(joint, start, algorithm=algorithm, lower=low, upper=high, close=CLOSE)
 
 
 def _check_names(

@@ -84,7 +84,8 @@ class OutputErrorLikelihood:
             cost = 0.5 * float(sums.counts @ np.log(r))
         else:
             cost = 0.5 * float(np.sum(sums.squares / r))
-        information = np.tensordot(1.0 / r, sums.information, 1)
+        k = len(theta)
+        information = ((1.0 / r) @ sums.information.reshape(len(r), -1)).reshape(k, k)
         return Point(cost, -(1.0 / r) @ sums.gradient, information)
 
 

@@ -47,14 +47,18 @@ void take_up(const VariationalPlan<axes>& plan, int sample, const Sensitive<axes
     const int which = m.output[o];
     const bool wanted = z[o] == z[o];
     if (!wanted && !sums.predicted && !sums.sensitivity) continue;
-    alignas(32) SensitivityRow J;
+    alignas(32) SensitivityRow own_row;
+    const double* J = own_row;
     double y = 0.0;
     if (which < kMotionVariables) {
       int own = -1;
       for (int i = 0; i < K::kStates; ++i)
         if (K::state[i] == which && plan.is_state[i]) own = i;
       y = own < 0 ? u[kInMotion + which] : at.x[own];
-      for (int j = 0; j < stride; ++j) J[j] = own < 0 ? 0.0 : at.S[own][j];
+      if (own >= 0 && m.bias_column[o] < 0)
+        J = at.S[own];
+      else
+        for (int j = 0; j < stride; ++j) own_row[j] = own < 0 ? 0.0 : at.S[own][j];
     } else {
       const D& d = which == kOutAx     ? here.y.ax
                    : which == kOutAy   ? here.y.ay
@@ -63,10 +67,10 @@ void take_up(const VariationalPlan<axes>& plan, int sample, const Sensitive<axes
                    : which == kOutQdot ? here.y.rate[kMotionQ]
                                        : here.y.rate[kMotionR];
       y = d.value;
-      total_slope(plan, d, at.S, here, J);
+      total_slope(plan, d, at.S, here, own_row);
     }
     y += bias[o];
-    if (m.bias_column[o] >= 0) J[m.bias_column[o]] = 1.0;
+    if (m.bias_column[o] >= 0) own_row[m.bias_column[o]] = 1.0;
     if (sums.predicted) sums.predicted[static_cast<long>(sample) * m.outputs + o] = y;
     if (sums.sensitivity) {
       double* row = sums.sensitivity + (static_cast<long>(sample) * m.outputs + o) * m.columns;

@@ -53,6 +53,7 @@ struct VariationalPlan {
   int count[Kernel<axes>::kForces];
   struct Summand {
     int slot, column;  // column -1: fixed
+    bool again;        // the column has had a summand of this coefficient before
     double value, weight;
   } terms[Kernel<axes>::kForces][kMaxTerms];
   bool is_state[Kernel<axes>::kStates];
@@ -78,9 +79,12 @@ VariationalPlan<axes> variational_plan(const MeasuredManeuver& m, const double* 
     const Term& term = table.terms[static_cast<unsigned>(k)];
     if (term.slot < kVariables) plan.uses[term.slot] = true;
     const int force = force_of<axes>(term.coefficient);
-    if (force >= 0)
-      plan.terms[force][plan.count[force]++] = {term.slot, m.term_column[k], values[k],
-                                                m.term_weight[k]};
+    if (force < 0) continue;
+    bool again = false;
+    for (int i = 0; i < plan.count[force]; ++i)
+      if (plan.terms[force][i].column == m.term_column[k]) again = true;
+    plan.terms[force][plan.count[force]++] = {term.slot, m.term_column[k], again, values[k],
+                                              m.term_weight[k]};
   }
   for (int i = 0; i < table.step_count; ++i) {
     const Step& step = table.steps[static_cast<unsigned>(i)];
@@ -98,12 +102,13 @@ VariationalPlan<axes> variational_plan(const MeasuredManeuver& m, const double* 
   return plan;
 }
 
-// Everything at one instant: rates and specific forces with their slopes, and dC/dp.
+// Everything at one instant: rates and specific forces with their slopes, and dC/dp, of which only
+// what parameters act on is written: it begins as zero.
 template <Axes axes>
 struct Instant {
   using D = Dual<double, Kernel<axes>::kDirections>;
   MotionRates<D> y;
-  alignas(32) SensitivityRow by_parameter[Kernel<axes>::kForces];  // at fixed state
+  alignas(32) SensitivityRow by_parameter[Kernel<axes>::kForces] = {};  // at fixed state
 };
 
 namespace detail {
@@ -211,10 +216,11 @@ inline void evaluate(const VariationalPlan<axes>& plan, const double* x, const d
 
   for (int c = 0; c < K::kForces; ++c) {
     double* row = out.by_parameter[c];
-    for (int j = 0; j < plan.stride; ++j) row[j] = 0.0;
     for (int k = 0; k < plan.count[c]; ++k) {
       const auto& term = plan.terms[c][k];
-      if (term.column >= 0) row[term.column] += term.weight * slots[term.slot].value;
+      if (term.column < 0) continue;
+      const double slope = term.weight * slots[term.slot].value;
+      row[term.column] = term.again ? row[term.column] + slope : slope;
     }
   }
 }
