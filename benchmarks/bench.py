@@ -23,6 +23,9 @@ for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUM
 sys.path.insert(0, str(Path(__file__).parent))
 import cases  # noqa: E402
 
+# Each filter with the peer's whose estimate it computes. The iterated one has none: it is timed
+# beside the extended filter.
+FILTERS = {"ukf": "ukf", "ekf": "ekf", "srukf": "ukf", "iekf": None}
 TOLERANCE = 1e-6  # of the baselines' README, relative, on the final state
 ROUNDS = 12
 BUILD = cases.ROOT / "build"
@@ -62,22 +65,28 @@ def allocations() -> dict[str, dict[str, Any]]:
     return counted
 
 
+def _counted(counted: dict[str, dict[str, Any]], name: str) -> Any:
+    """Allocations of 'ukf_core_v3' and the like; None where they were not counted."""
+    short, _, module = name.partition("_")
+    return counted.get(f"_{module}", {}).get(f"{short}_allocations")
+
+
 def filter_rows(rounds: int = ROUNDS) -> list[dict[str, Any]]:
     """Every filter of every module against both numba filters, timed in turn."""
     c = cases.case()
     peers = cases.peers()
     runs: dict[str, Any] = {
-        f"{name}{module}": cases.ours(module, name, c)
-        for module in modules()
-        for name in ("ukf", "ekf")
+        f"{name}{module}": cases.ours(module, name, c) for module in modules() for name in FILTERS
     }
-    for name in ("ukf", "ekf"):
-        reference = getattr(peers, f"{name}_numpy")(c)[0]
+    for name, peer in FILTERS.items():
+        if peer is None:
+            continue
+        reference = getattr(peers, f"{peer}_numpy")(c)[0]
         for module in modules():
             apart = cases.difference(runs[f"{name}{module}"](c)[0], reference)
             if not apart <= TOLERANCE:
                 raise SystemExit(
-                    f"{name} of {module}: final state {apart:.1e} from {name}_numpy, "
+                    f"{name} of {module}: final state {apart:.1e} from {peer}_numpy, "
                     f"more than {TOLERANCE:.0e}: no ratio counts"
                 )
     runs["ukf_numba"], runs["ekf_numba"] = peers.ukf_numba, peers.ekf_numba
@@ -96,6 +105,8 @@ def filter_rows(rounds: int = ROUNDS) -> list[dict[str, Any]]:
     counted = allocations()
     pairs = [(f"ukf{m}", "ukf_numba") for m in modules()]
     pairs += [(f"ekf{m}", p) for m in modules() for p in ("ukf_numba", "ekf_numba")]
+    pairs += [(f"srukf{m}", "ukf_numba") for m in modules()]
+    pairs += [(f"iekf{m}", "ekf_numba") for m in modules()]
     rows = []
     for name, peer in pairs:
         ours_s, peer_s = min(seconds[name]), min(seconds[peer])
@@ -107,7 +118,7 @@ def filter_rows(rounds: int = ROUNDS) -> list[dict[str, Any]]:
                 "peer_s": peer_s,
                 "ratio": peer_s / ours_s,
                 "ratio_median": statistics.median(seconds[peer]) / statistics.median(seconds[name]),
-                "allocations": counted.get(name[3:], {}).get(f"{name[:3]}_allocations"),
+                "allocations": _counted(counted, name),
             }
         )
     return rows

@@ -46,7 +46,7 @@ def peers() -> Any:
 
 
 def ours(module: str, name: str, c: Case) -> Filter:
-    """Alula's filter `name` (ekf, ukf) of the compiled `module` (_core, _core_v3) for this case."""
+    """Alula's filter `name` (ekf, iekf, ukf, srukf) for this case, of the compiled `module`."""
     core = importlib.import_module(f"alula.{module}")
     model = core.PathModel()
     model.states, model.motion, model.dynamic, model.gravity = 14, 7, 13, 9.80665

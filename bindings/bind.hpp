@@ -21,9 +21,11 @@ inline alula::Vec3<double> vec3(Vector a, const char* what) {
 }
 
 void bind_path(nb::module_& m);
+void bind_linear_filter(nb::module_& m);
 void bind_processor(nb::module_& m);
 void bind_aero(nb::module_& m);
 void bind_atmosphere(nb::module_& m);
 void bind_simulate(nb::module_& m);
 void bind_aircraft(nb::module_& m);
+void bind_recursive(nb::module_& m);
 void bind_output_error(nb::module_& m);

@@ -4,10 +4,12 @@
 NB_MODULE(ALULA_MODULE, m) {
   m.doc() = "Alula's compiled core: kinematics, filters, estimators and equations of motion.";
   bind_path(m);
+  bind_linear_filter(m);
   bind_processor(m);
   bind_aero(m);
   bind_atmosphere(m);
   bind_aircraft(m);
   bind_simulate(m);
+  bind_recursive(m);
   bind_output_error(m);
 }

@@ -5,9 +5,9 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
-#include <alula/filters/extended.hpp>
+#include <alula/filters/iterated.hpp>
 #include <alula/filters/path_run.hpp>
-#include <alula/filters/unscented.hpp>
+#include <alula/filters/square_root_unscented.hpp>
 #include <memory>
 #include <stdexcept>
 
@@ -42,10 +42,39 @@ void add_sensor(Model& model, int quantity, const std::vector<double>& position,
     throw std::invalid_argument("at most " + std::to_string(kMaxOutputs) + " sensors");
 }
 
+// What a run of a filter takes and gives besides its histories.
+struct Run {
+  const double *x0, *sigma0;  // (states) the constants' prior
+  bool smooth;
+  double* filtered;          // (samples, states) before smoothing, where smoothed
+  double* final_covariance;  // (states, states)
+  int done = 0, reached = 0, repairs = 0, unsettled = 0;
+};
+using Runner = void (*)(const Model&, const PathRecord<double>&, const PathHistory<double>&, Run&);
+
 template <class Filter>
-Result run_rows(const Model& model, Vector t, Matrix inputs, Matrix readings,
-                nb::ndarray<const int, nb::ndim<1>, nb::c_contig> start, Matrix initial, Vector x0,
-                Vector sigma0, bool smooth, bool keep_covariance) {
+void run_rows(const Model& model, const PathRecord<double>& record,
+              const PathHistory<double>& history, Run& run) {
+  const int n = model.states;
+  auto filter = std::make_unique<Filter>();
+  for (int i = 0; i < n; ++i) {
+    filter->x[i] = run.x0[i];
+    filter->P[i][i] = run.sigma0[i] * run.sigma0[i];
+  }
+  run.done = run_filter(*filter, model, record, history);
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      run.final_covariance[i * n + j] = filter->P[i < j ? i : j][i < j ? j : i];
+  run.repairs = filter->repairs;
+  if constexpr (requires { filter->unsettled; }) run.unsettled = filter->unsettled;
+  if (!run.smooth || run.done < record.samples) return;
+  std::copy(history.x, history.x + record.samples * n, run.filtered);
+  run.reached = run_smoother(*filter, model, record, history);
+}
+
+Result run_all(Runner runner, const Model& model, Vector t, Matrix inputs, Matrix readings,
+               nb::ndarray<const int, nb::ndim<1>, nb::c_contig> start, Matrix initial, Vector x0,
+               Vector sigma0, bool smooth, bool keep_covariance) {
   const int samples = static_cast<int>(t.shape(0)), n = model.states, ny = model.sensors.size();
   row_of("inputs", inputs.shape(1), kInertialInputs);
   row_of("readings", readings.shape(1), ny);
@@ -55,57 +84,54 @@ Result run_rows(const Model& model, Vector t, Matrix inputs, Matrix readings,
       readings.shape(0) != t.shape(0) || start.data()[0] != 0)
     throw std::invalid_argument(
         "t, inputs, readings, start: expected one row a sample, start[0] 0");
-  const int packed = n * (n + 1) / 2;
   const bool all = smooth || keep_covariance;
-  Array<double> x({samples, n}), covariance({all ? samples : 0, packed}), innovation({samples, ny}),
-      deviation({samples, ny}), nis({samples});
-  auto filter = std::make_unique<Filter>();
-  for (int i = 0; i < n; ++i) {
-    filter->x[i] = x0.data()[i];
-    filter->P[i][i] = sigma0.data()[i] * sigma0.data()[i];
-  }
+  Array<double> x({samples, n}), covariance({all ? samples : 0, n * (n + 1) / 2}),
+      innovation({samples, ny}), deviation({samples, ny}), nis({samples}),
+      filtered({smooth ? samples : 0, n}), final_covariance({n, n});
   const PathRecord<double> record{samples,         t.data(),     inputs.data(),
                                   readings.data(), start.data(), initial.data()};
   const PathHistory<double> history{x.data(), all ? covariance.data() : nullptr, innovation.data(),
                                     deviation.data(), nis.data()};
-  int done = 0, reached = 0;
-  Array<double> final_covariance({n, n});
+  Run run{x0.data(), sigma0.data(), smooth, filtered.data(), final_covariance.data()};
   {
     nb::gil_scoped_release release;
-    done = run_filter(*filter, model, record, history);
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; j < n; ++j)
-        final_covariance.data()[i * n + j] = filter->P[i < j ? i : j][i < j ? j : i];
+    runner(model, record, history, run);
   }
   Result out;
-  const int repairs = filter->repairs;
-  if (smooth && done == samples) {
-    Array<double> filtered({samples, n});
-    std::copy(x.data(), x.data() + samples * n, filtered.data());
-    out["x_filtered"] = filtered.numpy();
-    nb::gil_scoped_release release;
-    reached = run_smoother(*filter, model, record, history);
-  }
+  if (smooth && run.done == samples) out["x_filtered"] = filtered.numpy();
   out["x"] = x.numpy();
   out["covariance"] = covariance.numpy();
   out["innovation"] = innovation.numpy();
   out["deviation"] = deviation.numpy();
   out["nis"] = nis.numpy();
   out["final_covariance"] = final_covariance.numpy();
-  out["done"] = done;
-  out["reached"] = reached;
-  out["repairs"] = repairs;
+  out["done"] = run.done;
+  out["reached"] = run.reached;
+  out["repairs"] = run.repairs;
+  out["unsettled"] = run.unsettled;
   return out;
 }
 
-// The filter with the shorter of the two row lengths that hold the states.
-template <template <class, int> class Filter>
+// A filter of the core as a function of Python's. `chosen`: which rows hold the model.
+template <Runner (*chosen)(const Model&)>
 Result run(const Model& model, Vector t, Matrix inputs, Matrix readings,
            nb::ndarray<const int, nb::ndim<1>, nb::c_contig> start, Matrix initial, Vector x0,
            Vector sigma0, bool smooth, bool keep_covariance) {
-  const auto chosen = model.states < kShortRow ? &run_rows<Filter<double, kShortRow>>
-                                               : &run_rows<Filter<double, kLongRow>>;
-  return chosen(model, t, inputs, readings, start, initial, x0, sigma0, smooth, keep_covariance);
+  return run_all(chosen(model), model, t, inputs, readings, start, initial, x0, sigma0, smooth,
+                 keep_covariance);
+}
+
+// The shorter rows where they hold the states: for the filters that run by default.
+template <template <class, int> class Filter>
+Runner fitting(const Model& model) {
+  return short_rows(model) ? &run_rows<Filter<double, kShortRow>>
+                           : &run_rows<Filter<double, kLongRow>>;
+}
+
+// The longer ones always: a tenth slower, and half the code.
+template <template <class, int> class Filter>
+Runner one_size(const Model&) {
+  return &run_rows<Filter<double, kLongRow>>;
 }
 
 nb::ndarray<nb::numpy, double> readings_of(const Model& model, Matrix inputs, Matrix x) {
@@ -197,13 +223,17 @@ void bind_path(nb::module_& m) {
       "the row of `initial` where a maneuver begins and -1 elsewhere, initial (maneuvers, 2 "
       "motion)\n"
       "values and standard deviations, x0 and sigma0 (states,) the constants' prior. Returns\n"
-      "histories; `done` < n where the filter lost its covariance.";
-  m.def("path_ekf", &run<Extended>, nb::arg("model"), nb::arg("t"), nb::arg("inputs"),
-        nb::arg("readings"), nb::arg("start"), nb::arg("initial"), nb::arg("x0"), nb::arg("sigma0"),
-        nb::arg("smooth") = false, nb::arg("keep_covariance") = false, doc);
-  m.def("path_ukf", &run<Unscented>, nb::arg("model"), nb::arg("t"), nb::arg("inputs"),
-        nb::arg("readings"), nb::arg("start"), nb::arg("initial"), nb::arg("x0"), nb::arg("sigma0"),
-        nb::arg("smooth") = false, nb::arg("keep_covariance") = false, doc);
+      "histories; `done` < n where the filter lost its covariance, `unsettled` updates whose\n"
+      "iteration did not converge.";
+  const auto filter = [&m, doc](const char* name, auto function) {
+    m.def(name, function, nb::arg("model"), nb::arg("t"), nb::arg("inputs"), nb::arg("readings"),
+          nb::arg("start"), nb::arg("initial"), nb::arg("x0"), nb::arg("sigma0"),
+          nb::arg("smooth") = false, nb::arg("keep_covariance") = false, doc);
+  };
+  filter("path_ekf", &run<fitting<Extended>>);
+  filter("path_iekf", &run<one_size<Iterated>>);
+  filter("path_ukf", &run<fitting<Unscented>>);
+  filter("path_srukf", &run<one_size<SquareRootUnscented>>);
   m.def(
       "path_readings", &readings_of, nb::arg("model"), nb::arg("inputs"), nb::arg("x"),
       "What the sensors read (n, sensors) under measured inputs (n, 6) and states x (n, states).");

@@ -251,7 +251,7 @@ def run(path: Path, seed: int, filter_: str = "ekf", every: int = 1, end: float 
     )
     n = len(problem.records[0].t)
     picked = np.arange(0, n, max(round(1.0 / DT / every), 1))  # once a second
-    x, P = filter_forward(problem, "ukf" if filter_ == "ukf" else "ekf", picked)
+    x, P = filter_forward(problem, filter_, picked)
     names = [u.name for u in problem.unknowns]
     constants = np.array([truth.constants[name] for name in names])
     se = np.sqrt(np.diagonal(P[-1]))[problem.motion :]

@@ -1,7 +1,7 @@
-// Both path filters over a minute of flight at 100 Hz: best time of the rounds and the number of
+// The path filters over a minute of flight at 100 Hz: best time of the rounds and the number of
 // heap allocations of one whole run, as JSON. `control` is counted around one known allocation.
-#include <alula/filters/extended.hpp>
-#include <alula/filters/unscented.hpp>
+#include <alula/filters/iterated.hpp>
+#include <alula/filters/square_root_unscented.hpp>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -50,11 +50,15 @@ int main(int count, char** arguments) {
   const long before = alula_test::allocations();
   { std::vector<double> control(3); }
   const long control = alula_test::allocations() - before;
-  const Timing u = best_of<Unscented<double, kShortRow>>(rounds);
-  const Timing e = best_of<Extended<double, kShortRow>>(rounds);
-  std::printf(
-      "{\"control\": %ld, \"ukf_s\": %.6f, \"ukf_allocations\": %ld, \"ekf_s\": %.6f, "
-      "\"ekf_allocations\": %ld}\n",
-      control, u.seconds, u.allocations, e.seconds, e.allocations);
+  std::printf("{\"control\": %ld", control);
+  const auto print = [](const char* name, Timing timing) {
+    std::printf(", \"%s_s\": %.6f, \"%s_allocations\": %ld", name, timing.seconds, name,
+                timing.allocations);
+  };
+  print("ukf", best_of<Unscented<double, kShortRow>>(rounds));
+  print("srukf", best_of<SquareRootUnscented<double, kShortRow>>(rounds));
+  print("ekf", best_of<Extended<double, kShortRow>>(rounds));
+  print("iekf", best_of<Iterated<double, kShortRow>>(rounds));
+  std::printf("}\n");
   return control > 0 ? 0 : 1;
 }

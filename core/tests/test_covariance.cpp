@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <alula/filters/extended.hpp>
+#include <alula/filters/iterated.hpp>
+#include <alula/filters/square_root_unscented.hpp>
 #include <alula/filters/unscented.hpp>
 #include <cmath>
 #include <cstdlib>
@@ -47,7 +49,8 @@ const Tuning kTunings[] = {
 
 template <class Filter>
 class Covariance : public testing::Test {};
-using Filters = testing::Types<Unscented<double, kShortRow>, Extended<double, kShortRow>>;
+using Filters = testing::Types<Unscented<double, kShortRow>, SquareRootUnscented<double, kShortRow>,
+                               Extended<double, kShortRow>, Iterated<double, kShortRow>>;
 TYPED_TEST_SUITE(Covariance, Filters);
 
 template <class Filter>
@@ -64,6 +67,7 @@ void stays_positive(const Tuning& tuning, int steps) {
   restart(*filter, model, f.initial.data());
   for (int i = 0; i < 14; ++i)
     filter->P[i][i] *= tuning.initial >= 0 ? tuning.initial : i % 2 ? 1e10 : 1e-10;
+  ASSERT_TRUE(filter->adopt(14));
   double innovation[kMaxOutputs], deviation[kMaxOutputs];
   int used = filter->update(model, &f.inputs[0], &f.readings[0], innovation, deviation);
   ASSERT_GE(used, 0) << "first update";

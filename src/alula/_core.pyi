@@ -61,7 +61,17 @@ def path_ekf(model: PathModel, t: Annotated[NDArray[numpy.float64], dict(shape=(
     Filter a record: t (n,), inputs (n, 6), readings (n, sensors) with NaN for none, start (n,)
     the row of `initial` where a maneuver begins and -1 elsewhere, initial (maneuvers, 2 motion)
     values and standard deviations, x0 and sigma0 (states,) the constants' prior. Returns
-    histories; `done` < n where the filter lost its covariance.
+    histories; `done` < n where the filter lost its covariance, `unsettled` updates whose
+    iteration did not converge.
+    """
+
+def path_iekf(model: PathModel, t: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], inputs: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], readings: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], start: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', writable=False)], initial: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], x0: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], sigma0: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], smooth: bool = False, keep_covariance: bool = False) -> dict[str, Any]:
+    """
+    Filter a record: t (n,), inputs (n, 6), readings (n, sensors) with NaN for none, start (n,)
+    the row of `initial` where a maneuver begins and -1 elsewhere, initial (maneuvers, 2 motion)
+    values and standard deviations, x0 and sigma0 (states,) the constants' prior. Returns
+    histories; `done` < n where the filter lost its covariance, `unsettled` updates whose
+    iteration did not converge.
     """
 
 def path_ukf(model: PathModel, t: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], inputs: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], readings: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], start: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', writable=False)], initial: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], x0: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], sigma0: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], smooth: bool = False, keep_covariance: bool = False) -> dict[str, Any]:
@@ -69,7 +79,17 @@ def path_ukf(model: PathModel, t: Annotated[NDArray[numpy.float64], dict(shape=(
     Filter a record: t (n,), inputs (n, 6), readings (n, sensors) with NaN for none, start (n,)
     the row of `initial` where a maneuver begins and -1 elsewhere, initial (maneuvers, 2 motion)
     values and standard deviations, x0 and sigma0 (states,) the constants' prior. Returns
-    histories; `done` < n where the filter lost its covariance.
+    histories; `done` < n where the filter lost its covariance, `unsettled` updates whose
+    iteration did not converge.
+    """
+
+def path_srukf(model: PathModel, t: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], inputs: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], readings: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], start: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', writable=False)], initial: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], x0: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], sigma0: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], smooth: bool = False, keep_covariance: bool = False) -> dict[str, Any]:
+    """
+    Filter a record: t (n,), inputs (n, 6), readings (n, sensors) with NaN for none, start (n,)
+    the row of `initial` where a maneuver begins and -1 elsewhere, initial (maneuvers, 2 motion)
+    values and standard deviations, x0 and sigma0 (states,) the constants' prior. Returns
+    histories; `done` < n where the filter lost its covariance, `unsettled` updates whose
+    iteration did not converge.
     """
 
 def path_readings(model: PathModel, inputs: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], x: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> NDArray[numpy.float64]:
@@ -80,6 +100,12 @@ def path_readings(model: PathModel, inputs: Annotated[NDArray[numpy.float64], di
 def path_open_loop(model: PathModel, t: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], inputs: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], x0: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], held: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)] | None = None, jacobian: bool = True) -> dict[str, Any]:
     """
     Integrate the kinematics from x0 without using a measurement, with exact Jacobians.
+    """
+
+def linear_filter(transition: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], input: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], process: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], output: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], noise: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], u: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], z: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], x0: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], P0: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], smooth: bool = False) -> dict[str, Any]:
+    """
+    Linear Kalman filter over z (samples, outputs), NaN for none, from x0 and P0 before the
+    first reading; process is Lambda Q Lambda'. `done` < samples where it lost its covariance.
     """
 
 def has_x86_64_v3() -> bool:
@@ -236,6 +262,31 @@ def velocity_at(v: Annotated[NDArray[numpy.float64], dict(shape=(None, None), or
 
 def readings(truth: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], normal: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], scale: float, bias: float, sigma: float, step: float, out: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]) -> None:
     """What a sensor with these errors reads."""
+
+MAX_RECURSIVE: int = 32
+
+MAX_RESIDUAL_WINDOW: int = 512
+
+MAX_FREQUENCIES: int = 64
+
+MAX_FOURIER_CHANNELS: int = 16
+
+def recursive_least_squares(x: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], z: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], initial: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], variance: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], bound: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], reset: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], factor: float, directional: bool, window: int, least: float, usual: float, reset_ratio: float, value: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], se: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], gain: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], steps: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None:
+    """
+    Recursive least squares of z (n,) on x (n, k) with forgetting. initial, variance, bound
+    (k,): values and variances (of unit noise) at the start, and those that forgetting does
+    not exceed. reset (n,): not zero where the variances start anew; or empty. Writes the
+    histories value and se (n, k), gain (n, k) where it is not empty, and steps (n, 5):
+    innovation, its variance over the noise's, forgetting factor used, whether the variances
+    were reset, noise variance.
+    """
+
+def recursive_fourier(x: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], omega: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], dt: float, forgetting: float, every: int, value: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], se: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None:
+    """
+    Sequential least squares in the frequency domain: the last column of x (n, c) on the
+    others, at angular frequencies omega (m,), ascending, by recursive Fourier transforms.
+    Writes value and se (n/every, c - 1), NaN where they are not determined yet.
+    """
 
 class ManeuverFit:
     """

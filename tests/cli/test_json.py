@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from pydantic import BaseModel, ConfigDict, Field
 
+from alula.base.filters import FILTERS, FilterName
 from alula.base.messages import warn
 from alula.cli.contract import Command, finite
 from cli.command import Ran, SmallProject, alula, process
@@ -101,7 +102,7 @@ class Nis(Strict):
 
 
 class Path_(Strict):
-    method: Literal["ekf", "ukf", "ml", "none"]
+    method: FilterName
     status: str
     biases: list[Bias]
     nis: Nis
@@ -141,7 +142,7 @@ def size(path: str) -> int:
     return Path(path).stat().st_size
 
 
-@pytest.mark.parametrize("filter", ["ekf", "ukf", "ml", "none"])
+@pytest.mark.parametrize("filter", FILTERS)
 def test_identify(sound: SmallProject, filter: str) -> None:
     ran = sound.identify("--filter", filter, "--truth", sound.folder / "truth.json", "--seed", 3)
     found = checked(ran, "identification", ran.envelope["status"])

@@ -23,12 +23,15 @@ PAGES = sorted(
 # The page of each registered method; a new entry in a registry needs one here.
 METHOD_PAGES = {
     "ekf": "extended_filter.md",
+    "iekf": "iterated_filter.md",
     "ukf": "unscented_filter.md",
+    "srukf": "square_root_filter.md",
     "ml": "maximum_likelihood.md",
     "ee": "equation_error.md",
-    "oe": "comparison.md",
+    "oe": "output_error.md",
     "fe": "filter_error.md",
     "fd": "frequency_domain.md",
+    "rls": "recursive.md",
 }
 
 

@@ -1,14 +1,20 @@
 """Filters, smoother, output error and no filter: what each promises."""
 
+from typing import get_args
+
 import made
 import numpy as np
 import pytest
 
+from alula.base.filters import FILTERS as WORDS
+from alula.base.filters import FilterName
 from alula.base.messages import BadInput
 from alula.core import core
 from alula.flight import Channel, Maneuver
-from alula.reconstruct import reconstruct
+from alula.reconstruct import METHODS, reconstruct
 from alula.reconstruct.problem import make_problem
+
+FILTERS = ["ekf", "iekf", "ukf", "srukf"]
 
 
 def problem_of(recipe, **more):
@@ -35,7 +41,7 @@ def run_core(problem, method, smooth, sigma=None):
     return out, P
 
 
-@pytest.mark.parametrize("method", ["ekf", "ukf"])
+@pytest.mark.parametrize("method", FILTERS)
 def test_smoother_is_never_less_certain_than_the_filter(method):
     problem, _ = problem_of(made.Recipe(duration=15.0))
     _, filtered = run_core(problem, method, smooth=False)
@@ -51,7 +57,7 @@ def test_smoother_is_never_less_certain_than_the_filter(method):
     )
 
 
-@pytest.mark.parametrize("method", ["ekf", "ukf"])
+@pytest.mark.parametrize("method", FILTERS)
 @pytest.mark.parametrize("factor", [1e-6, 1e6])
 def test_covariance_stays_positive_for_absurd_noise_levels(method, factor):
     # Perfect readings: noise a million times the stated one would only move the state about.
@@ -64,6 +70,41 @@ def test_covariance_stays_positive_for_absurd_noise_levels(method, factor):
     assert (scale > 0.0).all()
     # A correlation matrix whose least eigenvalue is rounding, not negative beyond it.
     assert np.linalg.eigvalsh(P / (scale[:, :, None] * scale[:, None, :])).min() > -1e-9
+
+
+def test_every_name_is_registered_and_has_words():
+    assert set(get_args(FilterName)) == set(WORDS) == {*METHODS, "none"}
+
+
+def test_square_root_and_covariance_form_agree():
+    """With position, wind and scale errors: nine motion states and the long rows."""
+    unknowns = {"k_alpha": {"prior": 0.05}, "k_V": {"prior": 0.02}}
+    problem, _ = problem_of(made.Recipe(duration=15.0), unknowns=unknowns)
+    for smooth in (False, True):
+        (a, P), (b, Q) = (run_core(problem, m, smooth=smooth) for m in ("ukf", "srukf"))
+        sigma = np.sqrt(np.diagonal(P, axis1=1, axis2=2))
+        # Rounding: a covariance of deviations 1e4 apart has eight digits left.
+        assert np.max(np.abs(a["x"] - b["x"]) / sigma) < 1e-6
+        assert np.max(np.abs(P - Q) / (sigma[:, :, None] * sigma[:, None, :])) < 1e-6
+        assert a["repairs"] == b["repairs"] == 0
+
+
+def test_iterated_filter_converges_or_says_that_it_did_not():
+    recipe = made.Recipe(duration=15.0)
+    iterated, _ = made.solve(recipe, filter="iekf")
+    assert iterated.converged
+    for name, truth in (("b_p", made.BIAS[3]), ("wind_n", made.WIND[0])):
+        value, se = made.constants(iterated)[name]
+        assert abs(value - truth) < 4.0 * se
+    flight, _ = made.record(recipe)
+    airspeed = flight["V"]
+    values = airspeed.values.copy()
+    values[100:110] = 2000.0  # against 60 m/s before and after, and against the ground's
+    wrong = made.replaced(flight, "V", Channel("V", airspeed.t, values, "m/s", "made"))
+    result, _ = made.solve(recipe, wrong, filter="iekf")
+    assert not result.converged
+    assert "did not converge" in result.status
+    assert [m.where for m in result.messages if m.code == "update_not_converged"] == ["filter iekf"]
 
 
 def test_innovations_are_white_and_of_the_stated_size():

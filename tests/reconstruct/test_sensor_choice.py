@@ -24,7 +24,7 @@ def near_truth(result, skip=()):
             assert abs(value - TRUE[name]) < 4.0 * se, name
 
 
-@pytest.mark.parametrize("method", ["ekf", "ukf", "ml"])
+@pytest.mark.parametrize("method", ["ekf", "iekf", "ukf", "srukf", "ml"])
 def test_perfect_sensors_give_back_the_truth(method):
     recipe = made.Recipe(noise=0.0, duration=20.0)
     result, truth = made.solve(recipe, filter=method)
@@ -38,7 +38,7 @@ def test_perfect_sensors_give_back_the_truth(method):
     np.testing.assert_allclose(motion.beta, air[:, 2], atol=2e-5)
 
 
-@pytest.mark.parametrize("method", ["ekf", "ukf", "ml"])
+@pytest.mark.parametrize("method", ["ekf", "iekf", "ukf", "srukf", "ml"])
 def test_noisy_sensors_give_the_truth_within_their_errors(method):
     result, _ = made.solve(made.Recipe(), filter=method)
     near_truth(result)

@@ -43,8 +43,11 @@ def test_short_extended_filter_is_honest():
     assert verdict.unobservable == ("de3211 k_beta",)
 
 
-def test_short_unscented_filter_is_honest():
-    verdict = two_step.monte_carlo(data("citation_two_step"), range(4), ("da3211",), "ukf", **SHORT)
+@pytest.mark.parametrize("filter_", ["iekf", "ukf", "srukf"])
+def test_other_short_filters_are_honest(filter_):
+    verdict = two_step.monte_carlo(
+        data("citation_two_step"), range(4), ("da3211",), filter_, **SHORT
+    )
     assert verdict.pooled > 0.85  # 44 intervals: deviation 0.033, three of them
     # 80 degrees of freedom a time: deviation 0.16.
     assert verdict.nees_ratio["da3211"] == pytest.approx(1.0, abs=0.35)
@@ -98,7 +101,7 @@ def test_what_a_recording_without_lateral_motion_cannot_tell_is_said():
     assert found == {"de3211": ["k_beta"], "da3211": []}
 
 
-@pytest.mark.parametrize("filter_", ["ekf", "ukf", "ml"])
+@pytest.mark.parametrize("filter_", ["ekf", "iekf", "ukf", "srukf", "ml"])
 def test_every_method_recovers_wind_and_biases(filter_):
     flight, truth = two_step.make_flight(data("citation_two_step", "da3211.mat"), 3, every=5)
     maneuver = Maneuver("m", flight.id, "", 0.0, 40.0)

@@ -12,6 +12,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, ValidationError, model_validator
 
+from alula.base.filters import FilterName
 from alula.base.messages import BadInput, Message
 from alula.base.project_messages import check_units, expand, explain, read_toml
 from alula.base.units import to_si
@@ -212,7 +213,7 @@ class InitialSpec(Quantity):
 class ReconstructSpec(Strict):
     """How the flight path is reconstructed."""
 
-    filter: Literal["ekf", "ukf", "ml", "none"] = "ekf"
+    filter: FilterName = "ekf"
     gravity: float = Field(default=9.80665, gt=0)
     share: Literal["all", "log", "maneuver"] = "all"
     initial_state: Literal["estimate", "measured"] = "estimate"

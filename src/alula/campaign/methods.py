@@ -21,6 +21,8 @@ from alula.identify.merge import merged
 from alula.identify.output_error import identify_output_error
 from alula.identify.output_error_problem import STATE_SETS, Setting
 from alula.identify.quality import se_words
+from alula.identify.recursive import forgetting_of
+from alula.identify.recursive_equation_error import identify_recursive
 from alula.identify.regression_choice import OPTIONS as REGRESSION
 from alula.identify.regression_choice import regression_choice
 from alula.identify.task import LONGITUDINAL
@@ -111,6 +113,14 @@ def _equation_error(task: IdentifyTask) -> Identification:
     if kind == "coloured":
         return result
     return bootstrapped(result, task.data, **own, **blocks, seed=task.seed)
+
+
+def _recursive(task: IdentifyTask) -> Identification:
+    own = {k: v for k, v in task.options.items() if k in ("common_constant", "scales")}
+    result = identify_recursive(
+        task.data, task.models, forgetting=forgetting_of(task.options), **own, truth=task.truth
+    )
+    return replace(result, uncertainty=se_words("coloured residuals", task.data))
 
 
 def _frequency(task: IdentifyTask) -> Identification:
@@ -349,5 +359,19 @@ IDENTIFIERS: Mapping[str, Method] = {
         "frequency-domain regression",
         {"band_hz": "pair", "detrend": "text", "weighting": "text", "scales": "numbers"},
         _frequency,
+    ),
+    "rls": Method(
+        "recursive least squares",
+        {
+            "forgetting": "number",
+            "forgetting_directional": "flag",
+            "adaptive_window": "number",
+            "least_forgetting": "number",
+            "residual_variance": "number",
+            "reset_ratio": "number",
+            "common_constant": "flag",
+            "scales": "numbers",
+        },
+        _recursive,
     ),
 }

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from alula.base.filters import FilterName
 from alula.cli.contract import (
     Command,
     JsonOption,
@@ -22,15 +23,6 @@ if TYPE_CHECKING:
     from alula.campaign import Job
 
 
-class Filter(StrEnum):
-    """How the flight path is reconstructed."""
-
-    ekf = "ekf"
-    ukf = "ukf"
-    ml = "ml"
-    none = "none"
-
-
 class Method(StrEnum):
     """How the model is identified."""
 
@@ -38,12 +30,13 @@ class Method(StrEnum):
     oe = "oe"
     fe = "fe"
     fd = "fd"
+    rls = "rls"
 
 
 def identify(
     project: Annotated[Path, typer.Argument(metavar="PROJECT", help="The project file.")],
     method: Annotated[Method | None, typer.Option(help="Instead of the project's.")] = None,
-    filter: Annotated[Filter | None, typer.Option(help="Instead of the project's.")] = None,
+    filter: Annotated[FilterName | None, typer.Option(help="Instead of the project's.")] = None,
     maneuver: Annotated[
         list[str] | None,
         typer.Option(metavar="ID", help="Only this maneuver; may be given several times."),
@@ -78,7 +71,7 @@ def identify(
 
         job = run_project(
             str(project),
-            filter=None if filter is None else filter.value,
+            filter=filter,
             method=None if method is None else method.value,
             only=maneuver or (),
             truth=None if truth is None else _truth(truth),
@@ -122,6 +115,7 @@ def result_of(job: Job) -> dict[str, Any]:
                 "tied_to": [{"name": t.name, "weight": t.weight} for t in p.tied_to],
                 "unit": p.unit,
                 "vif": p.vif,
+                **({} if p.bias is None else {"bias": p.bias}),
                 **({} if p.truth is None else {"truth": p.truth}),
             }
             for p in found.parameters
@@ -139,6 +133,7 @@ def result_of(job: Job) -> dict[str, Any]:
                 "n": f.n,
                 "n_held_out": f.n_held_out,
                 "r2_held_out": f.r2_held_out,
+                **({} if f.diagnostics is None else {"diagnostics": f.diagnostics.words}),
             }
             for name, f in found.fits.items()
         },

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from alula.base.filters import FilterName
 from alula.cli.contract import (
     Command,
     JsonOption,
@@ -16,7 +17,6 @@ from alula.cli.contract import (
     ThreadsOption,
     writable,
 )
-from alula.cli.identify import Filter
 
 if TYPE_CHECKING:
     from alula.campaign import ValidationJob
@@ -46,7 +46,7 @@ def validate(
     report: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write the HTML report there.")
     ] = None,
-    filter: Annotated[Filter | None, typer.Option(help="Instead of the project's.")] = None,
+    filter: Annotated[FilterName | None, typer.Option(help="Instead of the project's.")] = None,
     trim: Annotated[
         Trim,
         typer.Option(help="Offsets of the coefficients from before the input, or the whole."),
@@ -76,7 +76,7 @@ def validate(
             str(project),
             model=model,
             only=maneuver or (),
-            filter=None if filter is None else filter.value,
+            filter=filter,
             trim=trim.value,
             horizon=horizon,
             draws=draws,

@@ -10,16 +10,23 @@ from alula.identify.coefficients import (
 )
 from alula.identify.equation_error import identify_equation_error
 from alula.identify.model import identified_model
-from alula.identify.result import Fit, Identification, Parameter, Series, Tie
+from alula.identify.recursive import Forgetting, recursive_least_squares
+from alula.identify.recursive_equation_error import identify_recursive
+from alula.identify.recursive_fourier import recursive_frequency_regression
+from alula.identify.regression_choice import RegressionChoice
+from alula.identify.result import Fit, History, Identification, Parameter, Series, Tie
 from alula.identify.state_space import StateSpace, identify_state_space, state_derivatives
 
 __all__ = [
     "CoefficientData",
     "Fit",
+    "Forgetting",
+    "History",
     "Identification",
     "Parameter",
     "Perturbed",
     "Reference",
+    "RegressionChoice",
     "Series",
     "StateSpace",
     "Thrust",
@@ -28,6 +35,9 @@ __all__ = [
     "coefficients_from_motion",
     "identified_model",
     "identify_equation_error",
+    "identify_recursive",
     "identify_state_space",
+    "recursive_frequency_regression",
+    "recursive_least_squares",
     "state_derivatives",
 ]

@@ -20,6 +20,7 @@ from alula.base.arrays import Array
 from alula.base.messages import Message, note, refuse
 from alula.identify.control_sign import signs_checked
 from alula.identify.feedback import Feedback, distrusted, feedback, warn_of_feedback
+from alula.identify.identifiability import UNCERTAIN
 from alula.identify.likelihood import Fitted, Prior, assembled
 from alula.identify.linear_output_error import prior_blocks
 from alula.identify.measured_maneuver import MeasuredManeuver
@@ -28,9 +29,9 @@ from alula.identify.output_error_fit import Covariance, OutputErrorFit, fit_outp
 from alula.identify.output_error_likelihood import likelihood_of
 from alula.identify.output_error_problem import STATE_SETS, FlightProblem, Setting
 from alula.identify.output_error_start import regressor_variables, start_values
-from alula.identify.result import Identification
+from alula.identify.result import Identification, Parameter
 from alula.identify.saturation import without_saturated
-from alula.identify.typical import unit
+from alula.identify.typical import typical_magnitude, unit
 from alula.model import AeroModel, Reference, aero_model, parse, reference_scales
 
 StateSet = Literal["longitudinal", "lateral", "six"]
@@ -144,6 +145,8 @@ def identify_output_error(
     parameters = tuple(replace(p, unit=_unit(p.coefficient, p.name)) for p in result.parameters)
     if setting.stabilize:
         parameters = tuple(distrusted(p, followed.get(p.coefficient, ())) for p in parameters)
+    lost = {p.coefficient for p in parameters if p.verdict == "not_identifiable"}
+    parameters = tuple(_plausible(p) if p.coefficient in lost else p for p in parameters)
     parameters, turned = signs_checked(parameters)
     return replace(
         result,
@@ -213,6 +216,16 @@ def _pulled(setting: Setting) -> tuple[Message, ...]:
             "and compare with filter error.",
         ),
     )
+
+
+def _plausible(p: Parameter) -> Parameter:
+    """'weak' where a value is beyond any airplane's, beside others that the data do not determine.
+
+    The search may have gone far along what is flat; a standard error is of the place it ended at.
+    """
+    typical = typical_magnitude(p.coefficient, p.name)
+    far = typical is not None and abs(p.value) > UNCERTAIN * typical
+    return replace(p, verdict="weak") if far and p.verdict == "ok" else p
 
 
 def _unit(belongs: str, name: str) -> str:

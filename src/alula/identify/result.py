@@ -119,6 +119,7 @@ class Identification:
     covariance: Array  # of all parameters, in their order
     status: str
     messages: tuple[Message, ...] = ()
+    histories: tuple[History, ...] = ()  # of recursive methods
     labels: Mapping[str, str] = field(default_factory=dict)
     formulas: Mapping[str, str] = field(default_factory=dict)
     uncertainty: str = "coloured residuals"

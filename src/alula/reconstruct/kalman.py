@@ -1,4 +1,4 @@
-"""Extended and unscented filter with Rauch-Tung-Striebel smoother, over all maneuvers in a row.
+"""The core's Kalman filters with Rauch-Tung-Striebel smoother, over all maneuvers in a row.
 
 At the start of each maneuver the motion begins anew, the unknowns carry on; so several maneuvers
 estimate one set of unknowns. The filters themselves are the core's: core/include/alula/filters.
@@ -7,7 +7,8 @@ Source: van den Hoek 2017, Sec. 3; Dittrich 2016, Sec. 3.1.4; Rauch, Tung, Strie
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 
@@ -20,22 +21,20 @@ from alula.reconstruct.solution import RecordSolution, Solution
 from alula.reconstruct.tempering import MOST_PASSES, SETTLED, Start, nearer, restored
 from alula.reconstruct.unknowns import WIND
 
-
-def solve_ekf(problem: Problem) -> Solution:
-    """The extended filter and its smoother. Raises BadInput where it loses its covariance."""
-    return _solve(problem, "ekf")
-
-
-def solve_ukf(problem: Problem) -> Solution:
-    """The unscented filter and its smoother. Raises BadInput where it loses its covariance."""
-    return _solve(problem, "ukf")
+# One filter: its header in core/include/alula/filters, its line in bindings/path.cpp, one here.
+RUNS: Mapping[str, Callable[..., dict[str, Any]]] = {
+    "ekf": core.path_ekf,
+    "iekf": core.path_iekf,
+    "ukf": core.path_ukf,
+    "srukf": core.path_srukf,
+}
 
 
-def filter_forward(
-    problem: Problem, method: Literal["ekf", "ukf"], picked: Array
-) -> tuple[Array, Array]:
-    """The filter without smoother: states (m, k) and covariances (m, k, k) given the readings so
-    far, at samples `picked` (m,) of all records in a row. Raises BadInput as the solvers do.
+def filter_forward(problem: Problem, method: str, picked: Array) -> tuple[Array, Array]:
+    """The filter `method` of RUNS without smoother: states (m, k) and covariances (m, k, k).
+
+    Given the readings so far, at samples `picked` (m,) of all records in a row. Raises BadInput as
+    solve_filter does.
     """
     stated, used, _ = _settle(problem, method)
     out, _, _ = _run(problem, method, used, smooth=False)
@@ -43,7 +42,7 @@ def filter_forward(
     return restored(out["x"][picked], covariance, problem.motion, used, stated)
 
 
-def _settle(problem: Problem, method: Literal["ekf", "ukf"]) -> tuple[Start, Start, bool]:
+def _settle(problem: Problem, method: str) -> tuple[Start, Start, bool]:
     """Stated start of the constants, the start near their estimates, and whether they settled.
 
     Where nothing multiplies, or the passes do not settle, both starts are the stated one.
@@ -74,7 +73,7 @@ def _settle(problem: Problem, method: Literal["ekf", "ukf"]) -> tuple[Start, Sta
 
 def _run(
     problem: Problem,
-    method: Literal["ekf", "ukf"],
+    method: str,
     constants: Start,
     smooth: bool,
     keep: bool = True,
@@ -91,14 +90,13 @@ def _run(
             found=f'filter = "{method}"',
             do="Take the entry out: a filter weighs these channels as sensors.",
         )
-    run = core.path_ekf if method == "ekf" else core.path_ukf
     lengths = [len(r.t) for r in problem.records]
     starts = np.concatenate([[0], np.cumsum(lengths)[:-1]]).astype(int)
     start = np.full(sum(lengths), -1, dtype=np.int32)
     start[starts] = np.arange(len(lengths))
     inputs = np.concatenate([r.inputs for r in problem.records])
     none = np.zeros(problem.motion)
-    out = run(
+    out = RUNS[method](
         problem.model(),
         np.concatenate([r.t for r in problem.records]),
         inputs,
@@ -115,7 +113,8 @@ def _run(
     return out, lengths, starts
 
 
-def _solve(problem: Problem, method: Literal["ekf", "ukf"]) -> Solution:
+def solve_filter(problem: Problem, method: str) -> Solution:
+    """The filter `method` of RUNS and its smoother. Raises BadInput where it is lost."""
     stated, used, settled = _settle(problem, method)
     out, lengths, starts = _run(problem, method, used, smooth=True)
     model = problem.model()
@@ -155,6 +154,17 @@ def _solve(problem: Problem, method: Literal["ekf", "ukf"]) -> Solution:
                 do="Free fewer unknowns, narrow their priors, or compare with filter 'ml'.",
             )
         )
+    if out["unsettled"]:
+        messages.append(
+            warn(
+                "update_not_converged",
+                where=f"filter {method}",
+                expected="updates that settle within the bound on passes",
+                found=f"{out['unsettled']} of {len(inputs)} that still moved",
+                do="State priors nearer to the start of the motion, or compare with another "
+                "filter: those readings contradict what the filter knew.",
+            )
+        )
     if out["repairs"]:
         messages.append(
             warn(
@@ -174,8 +184,9 @@ def _solve(problem: Problem, method: Literal["ekf", "ukf"]) -> Solution:
         sigma=np.array([s.sigma for s in problem.sensors]),
         nis=float(np.sum(out["nis"])),
         readings=int(np.sum(np.isfinite(out["deviation"]))),
-        converged=True,
-        status="forward and backward over all samples",
+        converged=not out["unsettled"],
+        status="forward and backward over all samples"
+        + (f"; {out['unsettled']} updates did not converge" if out["unsettled"] else ""),
         messages=tuple(messages),
     )
 

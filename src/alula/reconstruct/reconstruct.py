@@ -14,7 +14,7 @@ from alula.base.project import ReconstructSpec
 from alula.core import core
 from alula.flight import Flight, Maneuver, Motion
 from alula.reconstruct.compare import compare_duplicates
-from alula.reconstruct.kalman import solve_ekf, solve_ukf
+from alula.reconstruct.kalman import RUNS, solve_filter
 from alula.reconstruct.maximum_likelihood import solve_ml
 from alula.reconstruct.problem import Problem, make_problem
 from alula.reconstruct.recorded import recorded_motion
@@ -23,11 +23,18 @@ from alula.reconstruct.skew import time_skews
 from alula.reconstruct.solution import Solution
 from alula.reconstruct.transfer import Transfer
 
-# One method: one file, one entry here and one in ReconstructSpec.filter.
-METHODS: Mapping[str, Callable[[Problem], Solution]] = {
-    "ekf": solve_ekf,
-    "ukf": solve_ukf,
-    "ml": solve_ml,
+Method = Callable[[Problem, ReconstructSpec], Solution]
+
+
+def _filter(name: str) -> Method:
+    return lambda problem, _: solve_filter(problem, name)
+
+
+# One method: one file, one entry here; its name in words stands in alula.base.filters. The Kalman
+# filters are registered where they run.
+METHODS: Mapping[str, Method] = {
+    **{name: _filter(name) for name in RUNS},
+    "ml": lambda problem, spec: solve_ml(problem, spec.initial_state == "estimate"),
 }
 OBSERVED = 0.5  # share of the prior's standard deviation that the data must take away
 LATE = 0.5  # of a sample interval: a delay that is worth a word
@@ -60,10 +67,7 @@ def reconstruct(
     for group, members in groups.items():
         progress(f"reconstructing {', '.join(m.id for m in members)}")
         problem = make_problem(dict(flights), members, aircraft, spec)
-        if spec.filter == "ml":
-            solution = solve_ml(problem, spec.initial_state == "estimate")
-        else:
-            solution = METHODS[spec.filter](problem)
+        solution = METHODS[spec.filter](problem, spec)
         suffix = f"[{group}]" if len(groups) > 1 else ""
         found, said = _constants(problem, solution, suffix)
         constants += found

@@ -74,7 +74,7 @@ class Reconstruction:
     filter's own assumptions; NaN for methods without innovations.
     """
 
-    method: str  # 'ekf', 'ukf', 'ml', 'none'
+    method: str  # a FilterName
     segments: tuple[Segment, ...]
     constants: tuple[Constant, ...]
     constants_cov: Array  # (len(constants), len(constants))

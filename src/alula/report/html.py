@@ -17,6 +17,7 @@ from typing import Any
 _UNSEEN = re.compile(
     "[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]"
 )
+MOST_ROWS = 400  # of a table; the page must stay small whatever the project
 _VOID = {"br", "meta", "col", "hr", "rect", "line", "circle", "path"}
 
 
@@ -65,8 +66,13 @@ def table(
     numeric: Iterable[int] = (),
     class_: str | None = None,
 ) -> Html:
-    """A table with a caption; a row's first cell is its heading, `numeric` columns align right."""
+    """A table with a caption; a row's first cell is its heading, `numeric` columns align right.
+
+    Of more than MOST_ROWS rows the first are shown, and how many are not.
+    """
     right = frozenset(numeric)
+    rows = list(rows)
+    further = len(rows) - MOST_ROWS
 
     def cell(kind: str, column: int, content: object, scope: str | None = None) -> Html:
         return tag(kind, content, scope=scope, class_="n" if column in right else None)
@@ -79,8 +85,11 @@ def table(
                 for k, c in enumerate(row)
             ),
         )
-        for row in rows
+        for row in rows[:MOST_ROWS]
     )
+    if further > 0:
+        words = f"{further} further rows are left out, so that the page stays under 3 MB."
+        body = join([body, tag("tr", tag("th", words, scope="row", colspan=len(head)))])
     top = tag("tr", *(cell("th", k, c, "col") for k, c in enumerate(head)))
     # the box scrolls where the page is narrower than the table; it is focusable for the keyboard
     return tag(

@@ -6,6 +6,7 @@ import base64
 import hashlib
 from importlib.resources import files
 
+from alula.report.budget import left_out, store_for
 from alula.report.figures import FigureStore
 from alula.report.html import Html, css_string, join, tag
 from alula.report.input import ReportInput
@@ -13,17 +14,14 @@ from alula.report.sections.coefficients import coefficients
 from alula.report.sections.correlation import correlation
 from alula.report.sections.log_card import log_cards
 from alula.report.sections.maneuvers import maneuvers
-from alula.report.sections.motion import steady_states
 from alula.report.sections.notes import messages, provenance
 from alula.report.sections.parameters import parameters
 from alula.report.sections.reconstruction import reconstruction
 from alula.report.sections.summary import header
 from alula.report.sections.validation import evidence
-from alula.report.sections.validation_flights import COLUMNS, flights
+from alula.report.sections.validation_flights import flights
 
 _SCRIPTS = ("alula_series.js", "alula_link.js", "alula_plot.js", "report.js")
-_BUDGET = 2_300_000  # bytes of plot data, so that the page stays well under 3 MB
-_LEAST = 150  # samples that a figure carries in any case, so that its course can be seen
 
 
 def render(report: ReportInput) -> str:
@@ -31,7 +29,7 @@ def render(report: ReportInput) -> str:
 
     The same input gives the same text.
     """
-    figures = FigureStore(most_samples(report))
+    figures = store_for(report, lambda store: join(c for *_, c in _sections(report, store)))
     sections = _sections(report, figures)
     style = _text("page.css") + _running_head(report)
     scripts = [_text(name) for name in _SCRIPTS]
@@ -83,6 +81,7 @@ def _sections(report: ReportInput, figures: FigureStore) -> list[tuple[str, str,
     found: list[tuple[str, str, Html]] = []
     if report.validation is not None:
         found.append(("evidence", "Evidence index", evidence(report.validation)))
+        figures.part = "flown"
         overlays = flights(report.validation, figures)
         found.append(("flown", "Model and flight side by side", overlays))
     if report.cards:
@@ -90,11 +89,13 @@ def _sections(report: ReportInput, figures: FigureStore) -> list[tuple[str, str,
     if report.maneuvers:
         found.append(("maneuvers", "Maneuvers", maneuvers(report)))
     if report.reconstruction is not None:
+        figures.part = "reconstruction"
         content = reconstruction(report.reconstruction, figures)
         recorded = report.reconstruction.method == "none"
         title = "Motion as recorded" if recorded else "Flight path reconstruction"
         found.append(("reconstruction", title, content))
     if report.identification is not None and report.identification.parameters:
+        figures.part = "coefficients"
         fits = coefficients(report.identification, figures)
         found.append(("coefficients", "Coefficients: measured and model", fits))
         found.append(("parameters", "Parameters", parameters(report.identification)))
@@ -103,7 +104,7 @@ def _sections(report: ReportInput, figures: FigureStore) -> list[tuple[str, str,
     found.append(("provenance", "Provenance", provenance(report)))
     for k, (key, title, content) in enumerate(found):
         if key in ("flown", "reconstruction", "coefficients"):
-            found[k] = (key, title, join([_HOW_TO, content]))
+            found[k] = (key, title, join([_HOW_TO, *left_out(report, figures, key), content]))
     return found
 
 
@@ -114,38 +115,6 @@ _HOW_TO = tag(
     "arrows pan, + and − zoom, 0 resets, [ and ] move the cursor from sample to sample.",
     class_="note screen",
 )
-
-
-def most_samples(report: ReportInput) -> int:
-    """Samples that each figure may carry so that all of them fit the budget."""
-    values = _BUDGET * 3 / 16  # of float32 in base64
-    sizes = sorted(_sizes(report))
-    columns = sum(c for _, c in sizes)
-    for samples, wide in sizes:  # what a short figure leaves over goes to the long ones
-        if samples * columns > values:
-            return max(_LEAST, int(values / columns))
-        values -= samples * wide
-        columns -= wide
-    return max(_LEAST, sizes[-1][0] if sizes else 0)
-
-
-def _sizes(report: ReportInput) -> list[tuple[int, int]]:
-    """(samples, columns) of what is to be drawn, about.
-
-    Thinned figures have times of their own, of twice the size of a value: two columns each.
-    """
-    sizes = []
-    if report.reconstruction is not None:
-        for segment in report.reconstruction.segments:
-            drawn = len(segment.state_names) - len(steady_states(segment))
-            columns = 2 * drawn + 16 + len(segment.motion.controls) + 2 * (drawn // 2 + 7)
-            sizes.append((len(segment.motion.t), columns))
-            sizes += [(len(s.t), 6) for s in segment.sensors]
-    if report.identification is not None:
-        sizes += [(len(s.t), 5) for s in report.identification.series]
-    if report.validation is not None:
-        sizes += [(len(one.t), COLUMNS) for one in report.validation.flown]
-    return sizes
 
 
 def _running_head(report: ReportInput) -> str:

@@ -5,12 +5,24 @@
   const data = JSON.parse(document.getElementById("alula-plots").textContent);
   const bytes = (id) => Uint8Array.from(atob(data.arrays[id]), (c) => c.charCodeAt(0)).buffer;
   const decoded = new Map();
+  /* float32 by name; [lowest, step, name] of whole numbers of 16 bits, 65535 where there is none. */
   const values = (id) => {
-    if (id === null) return null;
-    if (!decoded.has(id)) decoded.set(id, new Float32Array(bytes(id)));
-    return decoded.get(id);
+    if (id === undefined) return null;
+    const key = String(id);
+    if (!decoded.has(key)) {
+      decoded.set(key, Array.isArray(id)
+        ? Float32Array.from(new Uint16Array(bytes(id[2])), (k) => k === 65535 ? NaN : id[0] + id[1] * k)
+        : new Float32Array(bytes(id)));
+    }
+    return decoded.get(key);
   };
-  const times = (t) => "y" in t ? AlulaSeries.Times.of(new Float64Array(bytes(t.y)), t.breaks)
+  /* What was kept of even times, by the steps from sample to sample. */
+  const kept = (t) => {
+    let k = 0;
+    return Float64Array.from(new Uint16Array(bytes(t.jumps)), (jump) => t.start + t.step * (k += jump));
+  };
+  const times = (t) => "jumps" in t ? AlulaSeries.Times.of(kept(t), t.breaks)
+    : "y" in t ? AlulaSeries.Times.of(new Float64Array(bytes(t.y)), t.breaks)
     : AlulaSeries.Times.uniform(t.start, t.step, t.n);
   const links = new Map();
   const link = (group) => {
@@ -23,7 +35,7 @@
     const panels = figure.panels.map((p) => ({
       ...p,
       lines: p.lines.map((l) => ({ ...l, y: values(l.y) })),
-      bands: p.bands.map((b) => ({ ...b, half: values(b.half), center: values(b.center) })),
+      bands: (p.bands || []).map((b) => ({ ...b, half: values(b.half), center: values(b.center) })),
     }));
     return new AlulaPlot.Plot(host, { panels }, times(figure.t), link(figure.group));
   });

@@ -14,17 +14,19 @@ template <class T, int R>
 class Extended {
  public:
   static constexpr int kRow = R;
+  using Predictor = Extended;  // what the smoother asks
 
   T x[R] = {};
   alignas(64) T P[R][R] = {};  // full, symmetric
   int repairs = 0;
 
   bool predict(const PathModel<T>& model, const T* u0, const T* u1, T dt) {
-    return model.motion == kMotionStates ? predict<kMotionStates>(model, u0, u1, dt)
-                                         : predict<kMotionStatesWithPosition>(model, u0, u1, dt);
+    return by_motion<R>(
+        model, [&](auto motion) { return predict<decltype(motion)::value>(model, u0, u1, dt); });
   }
 
-  // As Unscented::update.
+  // As in Unscented.
+  bool adopt(int) { return true; }
   int update(const PathModel<T>& model, const T* u, const T* z, T* innovation, T* deviation);
 
   // C = P F' with the F of the last prediction.
@@ -40,16 +42,23 @@ class Extended {
     }
   }
 
- private:
-  T F_[kMotionStatesWithPosition][R];
+ protected:
   T H_[kMaxOutputs][R];
   alignas(64) T before_[R][R];  // P before the update
+
+  // The readings z taken up where they are linear about x: predicted + H_ (state - x). P, which
+  // was `before_`, becomes that after the update; `step` is the state's. Returns as `update`.
+  int take_up(const PathModel<T>& model, const T* z, const T* predicted, T* step, T* innovation,
+              T* deviation);
+
+ private:
+  T F_[kMotionStatesWithPosition][R];
   // Some direction has become sharper than the rest by half of all digits: from here on rounding
   // can make P indefinite, and every update looks.
   bool delicate_ = false;
 
-  int update_carefully(const PathModel<T>& model, const T* z, const T* predicted, T* innovation,
-                       T* deviation);
+  int take_up_carefully(const PathModel<T>& model, const T* z, const T* predicted, T* step,
+                        T* innovation, T* deviation);
 
   template <int N>
   bool predict(const PathModel<T>& model, const T* u0, const T* u1, T dt) {
@@ -93,11 +102,21 @@ class Extended {
 template <class T, int R>
 int Extended<T, R>::update(const PathModel<T>& model, const T* u, const T* z, T* innovation,
                            T* deviation) {
-  const int n = model.states;
-  T predicted[kMaxOutputs], step[R] = {}, PH[R];
-  int used = 0;
+  T predicted[kMaxOutputs], step[R];
   path_outputs_jacobian<R>(model, x, u, predicted, H_);
   std::memcpy(before_, P, sizeof P);
+  const int used = take_up(model, z, predicted, step, innovation, deviation);
+  for (int i = 0; i < model.states; ++i) x[i] += step[i];
+  return used;
+}
+
+template <class T, int R>
+int Extended<T, R>::take_up(const PathModel<T>& model, const T* z, const T* predicted, T* step,
+                            T* innovation, T* deviation) {
+  const int n = model.states;
+  T PH[R];
+  int used = 0;
+  clear<R>(step);
   for (int s = 0; s < model.sensors.size(); ++s) {
     innovation[s] = deviation[s] = std::numeric_limits<T>::quiet_NaN();
     if (!std::isfinite(z[s])) continue;
@@ -114,7 +133,7 @@ int Extended<T, R>::update(const PathModel<T>& model, const T* u, const T* z, T*
     for (int j = 0; j < n; ++j) total += h[j] * PH[j];
     // Here the subtraction below would cancel more than six digits.
     if (!(variance > T(1e-6) * total))
-      return update_carefully(model, z, predicted, innovation, deviation);
+      return take_up_carefully(model, z, predicted, step, innovation, deviation);
     const T inverse = T(1) / total;
     for (int i = 0; i < n; ++i) add_scaled<R>(P[i], -PH[i] * inverse, PH);
     add_scaled<R>(step, e * inverse, PH);
@@ -123,20 +142,17 @@ int Extended<T, R>::update(const PathModel<T>& model, const T* u, const T* z, T*
     ++used;
   }
   bool positive = !delicate_;
-  for (int i = 0; i < n; ++i) {
-    x[i] += step[i];
-    positive = positive && P[i][i] > T(0);
-  }
+  for (int i = 0; i < n; ++i) positive = positive && P[i][i] > T(0);
   return positive || repair(n) ? used : -1;
 }
 
 template <class T, int R>
-int Extended<T, R>::update_carefully(const PathModel<T>& model, const T* z, const T* predicted,
-                                     T* innovation, T* deviation) {
+int Extended<T, R>::take_up_carefully(const PathModel<T>& model, const T* z, const T* predicted,
+                                      T* step, T* innovation, T* deviation) {
   constexpr int kColumns = R + kMaxOutputs;
   const int n = model.states;
   T X[R][kColumns], Y[kMaxOutputs][kColumns], U[R][R], variance[kMaxOutputs], e[kMaxOutputs],
-      d[kMaxOutputs], step[R];
+      d[kMaxOutputs];
   int present[kMaxOutputs], ny = 0;
   std::memcpy(P, before_, sizeof P);
   delicate_ = true;
@@ -158,7 +174,6 @@ int Extended<T, R>::update_carefully(const PathModel<T>& model, const T* z, cons
   }
   if (!careful_update(X, n, Y, ny, n, variance, e, step, d)) return -1;
   covariance_of<R>(X, n, n + ny, P);
-  for (int i = 0; i < n; ++i) x[i] += step[i];
   for (int s = 0; s < ny; ++s) {
     innovation[present[s]] = e[s];
     deviation[present[s]] = d[s];

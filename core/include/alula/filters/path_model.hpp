@@ -5,6 +5,7 @@
 #include <alula/math/bounded.hpp>
 #include <alula/math/capacity.hpp>
 #include <alula/motion/point_kinematics.hpp>
+#include <type_traits>
 
 namespace alula {
 
@@ -77,6 +78,23 @@ struct PathModel {
     for (int& s : slot) s = -1;
   }
 };
+
+// Calls step(N) with the number of motion states as a constant. With position there are seldom few
+// states, so that only the long rows serve them: half the code.
+template <int R, class T, class Step>
+inline bool by_motion(const PathModel<T>& model, Step step) {
+  if (model.motion == kMotionStates) return step(std::integral_constant<int, kMotionStates>{});
+  if constexpr (R == kLongRow)
+    return step(std::integral_constant<int, kMotionStatesWithPosition>{});
+  else
+    return false;
+}
+
+// Whether the short rows hold the model; otherwise the long ones do.
+template <class T>
+inline bool short_rows(const PathModel<T>& model) {
+  return model.states < kShortRow && model.motion == kMotionStates;
+}
 
 // The value of an unknown under state x.
 template <class S, class T>
@@ -280,13 +298,20 @@ inline void path_step_jacobian(const PathModel<T>& model, T* x, const T* u0, con
   }
 }
 
-// Q (motion x motion, upper) of one step: input noise through G at x, van den Hoek 2017, Eq. (2).
+// G (motion x inputs): what one standard deviation of each input does in one step at x. Van den
+// Hoek 2017, Eq. (2).
 template <class T>
-inline void path_input_noise(const PathModel<T>& model, const T* x, T dt, T (*Q)[kMotionStates]) {
-  T G[kMotionStates][kInertialInputs];
+inline void path_input_gain(const PathModel<T>& model, const T* x, T dt, T (*G)[kInertialInputs]) {
   point_input_gain(x, G);
   for (int i = 0; i < kMotionStates; ++i)
     for (int j = 0; j < kInertialInputs; ++j) G[i][j] *= dt * model.input_sigma[j];
+}
+
+// Q = G G' (motion x motion, upper) of one step.
+template <class T>
+inline void path_input_noise(const PathModel<T>& model, const T* x, T dt, T (*Q)[kMotionStates]) {
+  T G[kMotionStates][kInertialInputs];
+  path_input_gain(model, x, dt, G);
   for (int i = 0; i < kMotionStates; ++i)
     for (int j = i; j < kMotionStates; ++j) {
       T s = T(0);

@@ -29,14 +29,16 @@ struct PathHistory {
   T* nis = nullptr;
 };
 
+// False where no covariance can be made of it.
 template <class Filter, class T>
-inline void restart(Filter& filter, const PathModel<T>& model, const T* initial) {
+inline bool restart(Filter& filter, const PathModel<T>& model, const T* initial) {
   const int n = model.states, motion = model.motion;
   for (int i = 0; i < motion; ++i) {
     filter.x[i] = initial[i];
     for (int j = 0; j < n; ++j) filter.P[i][j] = filter.P[j][i] = T(0);
     filter.P[i][i] = initial[motion + i] * initial[motion + i];
   }
+  return filter.adopt(n);
 }
 
 template <int R, class T>
@@ -60,10 +62,11 @@ int run_filter(Filter& filter, const PathModel<T>& model, const PathRecord<T>& r
   T innovation[kMaxOutputs], deviation[kMaxOutputs];
   for (int k = 0; k < record.samples; ++k) {
     const T* u = record.inputs + k * kInertialInputs;
-    if (record.start[k] >= 0)
-      restart(filter, model, record.initial + record.start[k] * 2 * model.motion);
-    else if (!filter.predict(model, u - kInertialInputs, u, record.t[k] - record.t[k - 1]))
+    if (record.start[k] >= 0) {
+      if (!restart(filter, model, record.initial + record.start[k] * 2 * model.motion)) return k;
+    } else if (!filter.predict(model, u - kInertialInputs, u, record.t[k] - record.t[k - 1])) {
       return k;
+    }
     if (filter.update(model, u, record.readings + k * ny, innovation, deviation) < 0) return k;
     if (history.x)
       for (int i = 0; i < n; ++i) history.x[k * n + i] = filter.x[i];
@@ -81,14 +84,40 @@ int run_filter(Filter& filter, const PathModel<T>& model, const PathRecord<T>& r
   return record.samples;
 }
 
-// Backward over a finished history: x and covariance become those given the whole record.
-// Returns the first sample that was reached: 0 where all went well.
+// One step back. before, x_predicted, P_predicted (upper): covariance before a step, state and
+// covariance after it; x_later, later: after it given the whole record; C: covariance of the state
+// before with the one after, becomes the gain. x and packed covariance become those given all.
+template <int R, class T>
+bool smooth_step(int n, const T (*before)[R], const T* x_predicted, const T (*P_predicted)[R],
+                 const T* x_later, const T (*later)[R], T (*C)[R], T* x, T* packed) {
+  T U[R][R], change[R][R] = {}, GD[R][R];
+  if (cholesky<R>(P_predicted, U, n) < 0) return false;
+  for (int i = 0; i < n; ++i) {
+    solve<R>(U, C[i], n);
+    for (int j = i; j < n; ++j) change[i][j] = change[j][i] = later[i][j] - P_predicted[i][j];
+  }
+  for (int i = 0; i < n; ++i) {
+    T s = T(0);
+    for (int j = 0; j < n; ++j) s += C[i][j] * (x_later[j] - x_predicted[j]);
+    x[i] += s;
+    clear<R>(GD[i]);
+    for (int m = 0; m < n; ++m) add_scaled<R>(GD[i], C[i][m], change[m]);
+  }
+  for (int i = 0; i < n; ++i)
+    for (int j = i; j < n; ++j) {
+      T s = before[i][j];
+      for (int m = 0; m < n; ++m) s += GD[i][m] * C[j][m];
+      *packed++ = s;
+    }
+  return true;
+}
+
 template <class Filter, class T>
-int run_smoother(Filter& filter, const PathModel<T>& model, const PathRecord<T>& record,
-                 const PathHistory<T>& history) {
+int smooth_back(Filter& filter, const PathModel<T>& model, const PathRecord<T>& record,
+                const PathHistory<T>& history) {
   const int n = model.states, packed = n * (n + 1) / 2;
   constexpr int R = Filter::kRow;
-  T before[R][R], later[R][R], C[R][R], U[R][R], GD[R][R];
+  T before[R][R], later[R][R], C[R][R];
   for (int k = record.samples - 1; k > 0; --k) {
     T* x = history.x + (k - 1) * n;
     T* p = history.covariance + (k - 1) * packed;
@@ -108,27 +137,18 @@ int run_smoother(Filter& filter, const PathModel<T>& model, const PathRecord<T>&
       if (!filter.predict(model, u - kInertialInputs, u, record.t[k] - record.t[k - 1])) return k;
       filter.cross(model, before, C);
     }
-    if (cholesky<R>(filter.P, U, n) < 0) return k;
-    for (int i = 0; i < n; ++i) solve<R>(U, C[i], n);  // C becomes the gain
-    for (int i = 0; i < n; ++i) {
-      T s = T(0);
-      for (int j = 0; j < n; ++j) s += C[i][j] * (history.x[k * n + j] - filter.x[j]);
-      x[i] += s;
-      for (int j = 0; j < n; ++j) {
-        T d = T(0);
-        for (int m = 0; m < n; ++m)
-          d += C[i][m] * (later[m][j] - (m < j ? filter.P[m][j] : filter.P[j][m]));
-        GD[i][j] = d;
-      }
-    }
-    for (int i = 0; i < n; ++i)
-      for (int j = i; j < n; ++j) {
-        T s = before[i][j];
-        for (int m = 0; m < n; ++m) s += GD[i][m] * C[j][m];
-        *p++ = s;
-      }
+    if (!smooth_step<R>(n, before, filter.x, filter.P, history.x + k * n, later, C, x, p)) return k;
   }
   return 0;
+}
+
+// Backward over a finished history: x and covariance become those given the whole record.
+// Returns the first sample that was reached: 0 where all went well. Filters that differ in their
+// update alone share one smoother.
+template <class Filter, class T>
+int run_smoother(Filter& filter, const PathModel<T>& model, const PathRecord<T>& record,
+                 const PathHistory<T>& history) {
+  return smooth_back<typename Filter::Predictor>(filter, model, record, history);
 }
 
 // Open loop: the kinematics integrated from state x0 (states) with constants as they are, no
@@ -143,7 +163,7 @@ void run_open_loop(const PathModel<T>& model, const T* t, const T* inputs, int s
                    const T* held, T* motion, T* readings, T* motion_jacobian,
                    T* readings_jacobian) {
   const int n = model.states, ny = model.sensors.size(), nm = model.motion;
-  constexpr int R = kMaxStates;
+  constexpr int R = kLongRow;
   T x[R], z[kMaxOutputs], F[kMotionStatesWithPosition][R], H[kMaxOutputs][R];
   T J[kMotionStatesWithPosition][R] = {}, next[kMotionStatesWithPosition][R];
   for (int i = 0; i < n; ++i) x[i] = x0[i];

@@ -14,6 +14,7 @@ template <class T, int R>
 class Unscented {
  public:
   static constexpr int kRow = R;
+  using Predictor = Unscented;  // what the smoother asks
   static constexpr int W = kLanes;
   using L = Lanes<T, W>;
 
@@ -27,9 +28,12 @@ class Unscented {
     T Q[kMotionStates][kMotionStates];
     path_input_noise(model, x, dt, Q);
     if (!factor(model)) return false;
-    return model.motion == kMotionStates ? predict<kMotionStates>(model, u0, u1, dt, Q)
-                                         : predict<kMotionStatesWithPosition>(model, u0, u1, dt, Q);
+    return by_motion<R>(
+        model, [&](auto motion) { return predict<decltype(motion)::value>(model, u0, u1, dt, Q); });
   }
+
+  // P was written from outside. False where it is no covariance.
+  bool adopt(int) { return true; }
 
   // Takes up the readings z that are numbers; NaN means 'no sample'. Writes each one's innovation
   // given those before it, and its standard deviation. Returns how many were used, -1 on failure.
@@ -48,7 +52,7 @@ class Unscented {
     }
   }
 
- private:
+ protected:
   // One slot for each point along the columns of the lower factor, first on the plus side, then on
   // the minus side; the slots from n on repeat the mean. X_: motion states, Y_: readings.
   alignas(64) T X_[kMotionStatesWithPosition][2 * R];
@@ -58,9 +62,6 @@ class Unscented {
   alignas(64) T D_[kMotionStatesWithPosition][R];  // weighted differences of opposite points
   alignas(64) T C_[kMaxOutputs][R];
   alignas(64) T DY_[kMaxOutputs][R];  // as D_, of the readings
-
-  int update_carefully(const PathModel<T>& model, const int* present, int ny, const T* middle, T* e,
-                       T* innovation, T* deviation);
 
   // A standard deviation that means 'unknown' is taken as `most`, correlations kept: points
   // farther out leave the range where the equations of motion, stepped, mean anything.
@@ -72,18 +73,19 @@ class Unscented {
     P[i][i] = most * most;
     ++repairs;
   }
-  void bound(const PathModel<T>& model) {
-    bound(kPhi, model.states, T(1));
-    bound(kTheta, model.states, T(0.4));
-    bound(kPsi, model.states, T(1));
+  template <class Bound>
+  static void each_bound(const PathModel<T>& model, Bound bound) {
+    bound(kPhi, T(1));
+    bound(kTheta, T(0.4));
+    bound(kPsi, T(1));
     for (int k = kBiasP; k <= kScaleR; ++k)
-      if (model.slot[k] >= 0) bound(model.slot[k], model.states, k <= kBiasR ? T(1) : T(0.2));
+      if (model.slot[k] >= 0) bound(model.slot[k], k <= kBiasR ? T(1) : T(0.2));
   }
 
   // Factor of P and the points' deviations from the mean.
   bool factor(const PathModel<T>& model) {
     const int n = model.states;
-    bound(model);
+    each_bound(model, [&](int i, T most) { bound(i, n, most); });
     const int raised = cholesky<R>(P, U_, n);
     if (raised < 0) return false;
     if (raised > 0) {
@@ -96,6 +98,64 @@ class Unscented {
     return true;
   }
 
+  // The points through the step: x becomes their mean, X_ their deviations from it, `middle` (N)
+  // that of the mean point. False where one is no longer finite.
+  template <int N>
+  bool propagate(const PathModel<T>& model, const T* u0, const T* u1, T dt, T* middle);
+
+  // The readings z that are there, at the points.
+  struct Sensed {
+    int present[kMaxOutputs], count = 0;
+    T e[kMaxOutputs];               // innovations, of the mean
+    T middle[kMaxOutputs];          // deviation of the mean point
+    T S[kMaxOutputs][kMaxOutputs];  // covariance with noise, upper
+    bool close = false;             // subtractions would cancel more than six digits
+  };
+
+  // Marks the readings that are there; `count` says how many.
+  static void find(const PathModel<T>& model, const T* z, Sensed& sensed, T* innovation,
+                   T* deviation) {
+    for (int s = 0; s < model.sensors.size(); ++s) {
+      innovation[s] = deviation[s] = std::numeric_limits<T>::quiet_NaN();
+      if (std::isfinite(z[s])) sensed.present[sensed.count++] = s;
+    }
+  }
+
+  // Y_, DY_, C_ and the rest of `sensed`, whose readings are found and whose points are drawn.
+  void sense(const PathModel<T>& model, const T* u, const T* z, Sensed& sensed);
+
+  // Readings one after another: each is freed from what those before it already told. x takes its
+  // share of each; subtract(w) has to take w w' from the covariance and says whether it could.
+  template <class Subtract>
+  int take_up(Sensed& sensed, T* innovation, T* deviation, Subtract subtract) {
+    const int ny = sensed.count;
+    for (int s = 0; s < ny; ++s) {
+      T(&S)[kMaxOutputs][kMaxOutputs] = sensed.S;
+      if (!(S[s][s] > T(0))) return -1;
+      const T inverse = T(1) / S[s][s];
+      for (int t = s + 1; t < ny; ++t) {
+        const T f = S[s][t] * inverse;
+        for (int r = t; r < ny; ++r) S[t][r] -= f * S[s][r];
+        add_scaled<R>(C_[t], -f, C_[s]);
+        sensed.e[t] -= f * sensed.e[s];
+      }
+      add_scaled<R>(x, sensed.e[s] * inverse, C_[s]);
+      innovation[sensed.present[s]] = sensed.e[s];
+      deviation[sensed.present[s]] = std::sqrt(S[s][s]);
+      if (!subtract(C_[s], inverse)) return -1;
+    }
+    return ny;
+  }
+
+  // Columns of deviations, and room for the readings' noise.
+  static constexpr int kColumns = 2 * R + 4 + kMaxOutputs;
+
+  // As take_up, on columns instead of covariances (careful_update.hpp); leaves the deviations of
+  // the state after the update in X. Returns how many columns they have, -1 on failure.
+  int take_up_carefully(const PathModel<T>& model, Sensed& sensed, T (*X)[kColumns], T* innovation,
+                        T* deviation);
+
+ private:
   // The state of the W points from slot b on; sign: which side of the mean.
   void points(int b, T sign, int count, L* state) const {
     for (int i = 0; i < count; ++i) state[i] = L(x[i]) + L(sign) * L::load(&spread_[i][b]);
@@ -134,6 +194,7 @@ class Unscented {
     }
   }
 
+ private:
   template <int N>
   bool predict(const PathModel<T>& model, const T* u0, const T* u1, T dt,
                const T (*Q)[kMotionStates]);
@@ -141,8 +202,8 @@ class Unscented {
 
 template <class T, int R>
 template <int N>
-bool Unscented<T, R>::predict(const PathModel<T>& model, const T* u0, const T* u1, T dt,
-                              const T (*Q)[kMotionStates]) {
+bool Unscented<T, R>::propagate(const PathModel<T>& model, const T* u0, const T* u1, T dt,
+                                T* middle) {
   const int n = model.states;
   for (int side = 0; side < 2; ++side)
     for (int b = 0; b < n + 1 - side; b += W) {  // the mean point once, on the plus side
@@ -153,7 +214,6 @@ bool Unscented<T, R>::predict(const PathModel<T>& model, const T* u0, const T* u
       point_step<N>(state, m0, m1, model.gravity, dt);
       for (int i = 0; i < N; ++i) state[i].store(&X_[i][side * R + b]);
     }
-  T middle[N];
   for (int i = 0; i < N; ++i) {
     const T value = X_[i][n];
     for (int b = n; b < R; ++b) X_[i][b] = X_[i][R + b] = value;
@@ -161,6 +221,16 @@ bool Unscented<T, R>::predict(const PathModel<T>& model, const T* u0, const T* u
     middle[i] = value - x[i];
     if (!(std::abs(x[i]) < T(1e30))) return false;
   }
+  return true;
+}
+
+template <class T, int R>
+template <int N>
+bool Unscented<T, R>::predict(const PathModel<T>& model, const T* u0, const T* u1, T dt,
+                              const T (*Q)[kMotionStates]) {
+  const int n = model.states;
+  T middle[N];
+  if (!propagate<N>(model, u0, u1, dt, middle)) return false;
   for (int i = 0; i < N; ++i) {
     T* row = P[i];
     clear<R>(row);
@@ -177,17 +247,9 @@ bool Unscented<T, R>::predict(const PathModel<T>& model, const T* u0, const T* u
 }
 
 template <class T, int R>
-int Unscented<T, R>::update(const PathModel<T>& model, const T* u, const T* z, T* innovation,
-                            T* deviation) {
-  int present[kMaxOutputs], ny = 0;
-  for (int s = 0; s < model.sensors.size(); ++s) {
-    innovation[s] = deviation[s] = std::numeric_limits<T>::quiet_NaN();
-    if (std::isfinite(z[s])) present[ny++] = s;
-  }
-  if (ny == 0) return 0;
-  if (!factor(model)) return -1;
-
-  const int n = model.states;
+void Unscented<T, R>::sense(const PathModel<T>& model, const T* u, const T* z, Sensed& sensed) {
+  const int n = model.states, ny = sensed.count;
+  const int* present = sensed.present;
   for (int side = 0; side < 2; ++side)
     for (int b = 0; b < n + 1 - side; b += W) {  // the mean point once, on the plus side
       L state[kMaxStates], m[kInertialInputs], wind[3];
@@ -198,53 +260,53 @@ int Unscented<T, R>::update(const PathModel<T>& model, const T* u, const T* z, T
       for (int s = 0; s < ny; ++s)
         path_output(model.sensors[present[s]], state, air).store(&Y_[s][side * R + b]);
     }
-
-  T e[kMaxOutputs], middle[kMaxOutputs], S[kMaxOutputs][kMaxOutputs];
-  bool close = false;  // subtractions would cancel more than six digits
   for (int s = 0; s < ny; ++s) {
     const T value = Y_[s][n];
     for (int b = n; b < R; ++b) Y_[s][b] = Y_[s][R + b] = value;
     const T mean = center(Y_[s], value, n, DY_[s]);
-    middle[s] = value - mean;
-    e[s] = wrapped(model.sensors[present[s]].quantity, z[present[s]] - mean);
+    sensed.middle[s] = value - mean;
+    sensed.e[s] = wrapped(model.sensors[present[s]].quantity, z[present[s]] - mean);
     clear<R>(C_[s]);
     for (int j = 0; j < n; ++j) add_scaled_from<R>(j, C_[s], DY_[s][j], U_[j]);
   }
   for (int s = 0; s < ny; ++s) {
-    products(Y_, s, ny, n, middle, S[s]);
+    products(Y_, s, ny, n, sensed.middle, sensed.S[s]);
     const T variance = model.sensors[present[s]].variance;
-    close = close || !(variance > T(1e-6) * S[s][s]);
-    S[s][s] += variance;
+    sensed.close = sensed.close || !(variance > T(1e-6) * sensed.S[s][s]);
+    sensed.S[s][s] += variance;
   }
-  if (close) return update_carefully(model, present, ny, middle, e, innovation, deviation);
-
-  // Readings one after another: each is freed from what those before it already told.
-  for (int s = 0; s < ny; ++s) {
-    if (!(S[s][s] > T(0))) return -1;
-    const T inverse = T(1) / S[s][s];
-    for (int t = s + 1; t < ny; ++t) {
-      const T f = S[s][t] * inverse;
-      for (int r = t; r < ny; ++r) S[t][r] -= f * S[s][r];
-      add_scaled<R>(C_[t], -f, C_[s]);
-      e[t] -= f * e[s];
-    }
-    for (int i = 0; i < n; ++i) add_scaled_from<R>(i, P[i], -C_[s][i] * inverse, C_[s]);
-    add_scaled<R>(x, e[s] * inverse, C_[s]);
-    innovation[present[s]] = e[s];
-    deviation[present[s]] = std::sqrt(S[s][s]);
-  }
-  return ny;
 }
 
 template <class T, int R>
-int Unscented<T, R>::update_carefully(const PathModel<T>& model, const int* present, int ny,
-                                      const T* middle, T* e, T* innovation, T* deviation) {
+int Unscented<T, R>::update(const PathModel<T>& model, const T* u, const T* z, T* innovation,
+                            T* deviation) {
+  const int n = model.states;
+  Sensed sensed;
+  find(model, z, sensed, innovation, deviation);
+  if (sensed.count == 0) return 0;
+  if (!factor(model)) return -1;
+  sense(model, u, z, sensed);
+  if (sensed.close) {
+    T X[R][kColumns];
+    const int columns = take_up_carefully(model, sensed, X, innovation, deviation);
+    if (columns < 0) return -1;
+    covariance_of<R>(X, n, columns, P);
+    return sensed.count;
+  }
+  return take_up(sensed, innovation, deviation, [&](const T* w, T inverse) {
+    for (int i = 0; i < n; ++i) add_scaled_from<R>(i, P[i], -w[i] * inverse, w);
+    return true;
+  });
+}
+
+template <class T, int R>
+int Unscented<T, R>::take_up_carefully(const PathModel<T>& model, Sensed& sensed, T (*X)[kColumns],
+                                       T* innovation, T* deviation) {
   // Opposite points, turned by 45 degrees: their differences carry the state, their sums and the
   // mean point only the curvature of the readings.
-  constexpr int kColumns = 2 * R + 1 + kMaxOutputs;
-  const int n = model.states, columns = 2 * n + 1;
+  const int n = model.states, ny = sensed.count, columns = 2 * n + 1;
   const T half = std::sqrt(T(0.25) / T(n));
-  T X[R][kColumns], Y[kMaxOutputs][kColumns], variance[kMaxOutputs], d[kMaxOutputs], step[R];
+  T Y[kMaxOutputs][kColumns], variance[kMaxOutputs], d[kMaxOutputs], step[R];
   for (int i = 0; i < n; ++i)
     for (int k = 0; k < columns; ++k) X[i][k] = k <= i ? U_[k][i] : T(0);
   for (int s = 0; s < ny; ++s) {
@@ -252,17 +314,16 @@ int Unscented<T, R>::update_carefully(const PathModel<T>& model, const int* pres
       Y[s][k] = DY_[s][k];
       Y[s][n + k] = half * (Y_[s][k] + Y_[s][R + k]);
     }
-    Y[s][2 * n] = std::sqrt(T(2)) * middle[s];
-    variance[s] = model.sensors[present[s]].variance;
+    Y[s][2 * n] = std::sqrt(T(2)) * sensed.middle[s];
+    variance[s] = model.sensors[sensed.present[s]].variance;
   }
-  if (!careful_update(X, n, Y, ny, columns, variance, e, step, d)) return -1;
-  covariance_of<R>(X, n, columns + ny, P);
+  if (!careful_update(X, n, Y, ny, columns, variance, sensed.e, step, d)) return -1;
   for (int i = 0; i < n; ++i) x[i] += step[i];
   for (int s = 0; s < ny; ++s) {
-    innovation[present[s]] = e[s];
-    deviation[present[s]] = d[s];
+    innovation[sensed.present[s]] = sensed.e[s];
+    deviation[sensed.present[s]] = d[s];
   }
-  return ny;
+  return columns + ny;
 }
 
 }  // namespace alula

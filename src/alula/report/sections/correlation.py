@@ -10,6 +10,7 @@ from alula.report.html import Html, join, table, tag
 from alula.report.numbers import number
 from alula.report.pictures import heat_map
 
+_MOST = 60  # parameters of a map that can still be read
 _STRONG = 0.9  # usual limit above which two estimates should not be read one by one
 
 
@@ -19,9 +20,11 @@ def correlation(result: Identification) -> Html:
     names = [p.name for p in result.parameters]
     owners = np.array([p.coefficient for p in result.parameters])
     maps = []
+    large: list[str] = []
     for name in dict.fromkeys(owners.tolist()):
         index = np.flatnonzero(owners == name)
-        if len(index) < 2:
+        if not 2 <= len(index) <= _MOST:
+            large += [str(name)] if len(index) > _MOST else []
             continue
         block = r[np.ix_(index, index)]
         title = f"Correlation of the parameters of {name}"
@@ -36,6 +39,13 @@ def correlation(result: Identification) -> Html:
                 "combination of the two better than either. Empty: not identifiable.",
             ),
             tag("div", *maps, class_="maps"),
+            tag(
+                "p",
+                f"No map of {', '.join(large)}: over {_MOST} parameters. The pairs below are of "
+                "all.",
+            )
+            if large
+            else "",
             _pairs(names, r),
             _across(owners, names, r),
         ]

@@ -12,10 +12,28 @@ from alula.report.numbers import MISSING, compact, number, shown, span
 if TYPE_CHECKING:
     from alula.logs.card import ChannelCard, LogCard
 
+_MOST_CHANNELS = 1000  # rows of channels on the page, of all logs together
+
 
 def log_cards(report: ReportInput) -> Html:
     """The files' byte accounts, then one table of channels per log."""
-    return join([_files(report), *(_card(card) for card in report.cards)])
+    shown: list[LogCard] = []
+    for card in report.cards:
+        if shown and sum(len(c.channels) for c in [*shown, card]) > _MOST_CHANNELS:
+            break
+        shown.append(card)
+    left = len(report.cards) - len(shown)
+    words = (
+        f"The channels of {left} of {len(report.cards)} logs are left out, so that the page stays "
+        "under 3 MB; alula check prints them all."
+    )
+    return join(
+        [
+            _files(report),
+            *(_card(card) for card in shown),
+            *([tag("p", words, class_="note")] if left else []),
+        ]
+    )
 
 
 def _files(report: ReportInput) -> Html:

@@ -34,7 +34,8 @@ _PANELS = 3  # states above one another in a figure
 def state_figures(segment: Segment) -> Iterator[Figure]:
     """The filter's states, neighbors of one unit in one figure, with bands of ±2 se."""
     names = segment.state_names
-    moving = [k for k in range(len(names)) if names[k] not in steady_states(segment)]
+    steady = steady_states(segment)
+    moving = [k for k in range(len(names)) if names[k] not in steady]
     groups = [list(group) for _, group in groupby(moving, key=lambda k: unit_of(names[k]))]
     # the tall figures first, so that those of one panel do not leave holes beside them
     for members in sorted(groups, key=lambda g: -min(len(g), _PANELS)):

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from alula.base.messages import Message
-from alula.report.html import Html, join, table, tag
+from alula.report.html import MOST_ROWS, Html, join, table, tag
 from alula.report.input import ReportInput
 from alula.report.numbers import MISSING
 from alula.report.pictures import mark
@@ -68,16 +68,33 @@ def _notes(members: Sequence[Message]) -> Html:
 
 
 def _group(members: Sequence[Message]) -> Html:
-    lines = tag("ul", *(tag("li", _line(m)) for m in members), class_="plain")
+    alike: dict[tuple[str, str, str], list[Message]] = {}
+    for m in members:
+        alike.setdefault((m.found, m.expected, m.do or ""), []).append(m)
+    items = [tag("li", _line(same)) for same in list(alike.values())[:MOST_ROWS]]
+    further = len(alike) - MOST_ROWS
+    if further > 0:
+        words = f"{further} further notes, left out so that the page stays under 3 MB: see --json."
+        items.append(tag("li", words))
+    lines = tag("ul", *items, class_="plain")
     if len(members) < _FOLDED:
         return lines
     beginning = join([_fact(members[0]), f", and {len(members) - 1} more"])
     return tag("details", tag("summary", beginning), lines)
 
 
-def _line(m: Message) -> Html:
-    """'channel q: column 8 in deg/s (expected: as recorded). It is now in rad/s.'"""
-    return join([_fact(m), ". ", _short(m.do)])
+def _line(same: Sequence[Message]) -> Html:
+    """'channel q: column 8 in deg/s (expected: as recorded). It is now in rad/s.'
+
+    same: messages that differ in their places alone; they share the line.
+    """
+    first, also = same[0], [m.where for m in same[1 : MOST_ROWS + 1]]
+    line = [_fact(first), ". ", _short(first.do)]
+    if also:
+        others = "; ".join(map(_shortened, also))
+        more = f"; and {len(same) - 1 - len(also)} more" if len(same) - 1 > len(also) else ""
+        line.append(f" So too ({len(same) - 1}): {others}{more}.")
+    return join(line)
 
 
 def _fact(m: Message) -> Html:

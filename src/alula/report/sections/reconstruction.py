@@ -8,7 +8,7 @@ import numpy as np
 
 from alula.reconstruct.result import Reconstruction, Segment, SensorFit
 from alula.report.figures import FigureStore
-from alula.report.html import Html, join, table, tag
+from alula.report.html import MOST_ROWS, Html, join, table, tag
 from alula.report.names import meaning, titled, unit_of
 from alula.report.numbers import MISSING, number, plus_minus, rms, shown
 from alula.report.pictures import mark, within_picture
@@ -25,7 +25,7 @@ def reconstruction(result: Reconstruction, figures: FigureStore) -> Html:
         [
             tag("p", mark(level, words, long=True)),
             *([] if result.method == "none" else _findings(result)),
-            *(_segment(s, figures) for s in result.segments),
+            *(_segment(s, figures) for s in result.segments if figures.draws(s.maneuver.id)),
         ]
     )
 
@@ -134,7 +134,8 @@ def _mismatch(result: Reconstruction) -> Html:
 
 def _whiteness(result: Reconstruction) -> Html:
     """Residual size and lag-1 autocorrelation of each sensor, against the bound of white noise."""
-    rows = []
+    rows: list[list[object]] = []
+    sizes: list[float] = []
     for segment in result.segments:
         for s in segment.sensors:
             factor, unit = shown(s.unit)
@@ -144,6 +145,7 @@ def _whiteness(result: Reconstruction) -> Html:
             if math.isfinite(s.whiteness):
                 white = abs(s.whiteness) <= bound
                 judged = mark("good", "white") if white else mark("caution", "colored")
+            sizes.append(misfit(s))
             rows.append(
                 [
                     tag("code", s.name),
@@ -159,9 +161,16 @@ def _whiteness(result: Reconstruction) -> Html:
             )
     if not rows:
         return tag("p", "No sensor was compared with the motion.")
+    if len(rows) > MOST_ROWS:  # those that fit worst first: the table ends before the others
+        rows = [row for _, row in sorted(zip(sizes, rows, strict=True), key=lambda r: -r[0])]
     return table(
         "Sensors: stated noise, residual (measured minus fitted), share of innovations inside "
-        "their 2 σ band (95 % expected) and lag-1 autocorrelation, called white within ±2/√n.",
+        "their 2 σ band (95 % expected) and lag-1 autocorrelation, called white within ±2/√n."
+        + (
+            " The largest residuals, against the stated noise, first."
+            if len(rows) > MOST_ROWS
+            else ""
+        ),
         [
             "Sensor",
             "Maneuver",
@@ -177,6 +186,12 @@ def _whiteness(result: Reconstruction) -> Html:
         numeric=(2, 4, 5, 6, 7),
         class_="dense",
     )
+
+
+def misfit(s: SensorFit) -> float:
+    """Rms of measured minus fitted, in stated standard deviations; 0 where nothing was measured."""
+    size = rms(s.measured - s.fitted) / s.sigma if s.sigma > 0.0 else 0.0
+    return size if math.isfinite(size) else 0.0
 
 
 def _inside(s: SensorFit) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from alula.base.filters import FILTERS
 from alula.identify.result import Identification
 from alula.reconstruct.result import Reconstruction
 from alula.report.html import Html, escape, file_name, join, tag
@@ -70,13 +71,6 @@ def _without_model(report: ReportInput) -> tuple[str, str]:
             + ", ".join(unseen)
         )
     return "good", "The flight path is reconstructed; no model was asked for"
-
-
-_METHODS = {
-    "ekf": "extended Kalman filter and smoother",
-    "ukf": "unscented Kalman filter and smoother",
-    "ml": "maximum likelihood, output error",
-}
 
 
 def reasons(report: ReportInput) -> list[Html]:
@@ -164,7 +158,7 @@ def _stopped(text: str) -> str:
 
 def method_words(method: str) -> str:
     """What a method's short name stands for; itself where there are no words."""
-    return _METHODS.get(method, method)
+    return FILTERS.get(method, method)
 
 
 def _many(count: int, what: str) -> str:

@@ -20,7 +20,6 @@ _PAIRS = (
     ("alpha", "V"), ("theta", "q"), ("az", "ax"), ("beta", "ay"), ("p", "phi"), ("r", "psi"),
     ("h",),
 )  # fmt: skip
-COLUMNS = 13 * 4 + 8  # of a maneuver's figures, about: for the page's budget
 
 
 def flights(result: Validation, figures: FigureStore) -> Html:
