@@ -22,8 +22,8 @@ from alula.identify import Reference
 from alula.identify.measured_maneuver import STATES, MeasuredManeuver
 from alula.identify.output_error_fit import OutputErrorFit, fit_output_error
 from alula.identify.output_error_problem import Setting
-from alula.model import Reference as ModelReference
 from alula.model import AeroModel, aero_model
+from alula.model import Reference as ModelReference
 
 FORMULAS = {"CL": "1 + alpha + qhat + de", "CD": "1 + CL^2", "Cm": "1 + alpha + qhat + de"}
 NAMES = (
