@@ -116,20 +116,21 @@ def twin_otter_output_error(recording: Path) -> tuple[str, bool]:
     m = maneuver(np.asarray(loadmat(recording)["fdata"], dtype=np.float64))
     plain = compared(m, identified(m, "diagonal"))
     full = compared(m, identified(m, "full"))
-    off = {n: (plain[n][0] - v) / se for n, (v, se) in PUBLISHED.items()}
-    slopes = max(abs(x) for n, x in off.items() if n != "Cm_0")
-    constant = abs(plain["Cm_0"][0] - PUBLISHED["Cm_0"][0])
-    ratio = {n: full[n][1] / se for n, (_, se) in PUBLISHED.items()}
-    other = {n: plain[n][1] / se for n, (_, se) in PUBLISHED.items()}
-    words = (
-        f"off by at most {slopes:.2f} published standard errors, Cm0 by {constant:.1e}; bounds "
-        f"with the full covariance, as published, {min(ratio.values()):.2f} to "
-        f"{max(ratio.values()):.2f} of the published (with the diagonal one "
-        f"{min(other.values()):.2f} to {max(other.values()):.2f}); values with the full one: "
-        + ", ".join(f"{n} {(full[n][0] - v) / se:+.2f}" for n, (v, se) in PUBLISHED.items())
-    )
-    good = all(1.0 / 1.5 < r < 1.5 for r in ratio.values())
-    return words, slopes <= 2.0 and constant <= 1e-3 and good
+    words, holds = [], []
+    for name, found in (("diagonal", plain), ("full", full)):
+        off = {n: (found[n][0] - v) / se for n, (v, se) in PUBLISHED.items() if n != "Cm_0"}
+        worst = max(off, key=lambda n: abs(off[n]))
+        constant = abs(found["Cm_0"][0] - PUBLISHED["Cm_0"][0])
+        ratio = [found[n][1] / se for n, (_, se) in PUBLISHED.items()]
+        words.append(
+            f"{name} covariance of the residuals: {worst} {off[worst]:+.2f} published standard "
+            f"errors off at worst, Cm0 by {constant:.1e}, bounds {min(ratio):.2f} to "
+            f"{max(ratio):.2f} of the published"
+        )
+        good = all(1.0 / 1.5 < r < 1.5 for r in ratio)
+        holds.append(abs(off[worst]) <= 2.0 and constant <= 1e-3 and good)
+    # Values and bounds must come out of one and the same estimate.
+    return "; ".join(words), any(holds)
 
 
 def f(quick: bool) -> tuple[str, bool]:
