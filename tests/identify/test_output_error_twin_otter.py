@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from data import data
 from scipy.io import loadmat
+
+from data import data
 from verification.twin_otter_output_error import PUBLISHED, compared, identified, maneuver
 
 
