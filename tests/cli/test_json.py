@@ -85,6 +85,7 @@ class Fit(Strict):
     n: int = Field(ge=1)
     n_held_out: int = Field(ge=0)
     r2_held_out: float | None
+    diagnostics: str | None = None
 
 
 class Bias(Strict):

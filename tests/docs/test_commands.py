@@ -123,7 +123,7 @@ def test_every_option_is_on_the_page(command: str) -> None:
         assert f"`{option}" in page
 
 
-BY_NAME = ("mismatch", "maneuvers", "versions", "timing_s")  # whose keys name sensors and the like
+BY_NAME = ("mismatch", "formulas", "maneuvers", "versions", "timing_s")  # whose keys name sensors and the like
 
 
 def keys(value: object) -> set[str]:

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from alula.flight import Maneuver
-from alula.reconstruct.kalman import solve_ekf
+from alula.reconstruct.kalman import solve_filter
 from alula.reconstruct.problem import make_problem
 from alula.reconstruct.skew import time_skews
 
@@ -16,7 +16,7 @@ def skews(recipe, seed):
     problem = make_problem(
         {"made": flight}, [maneuver], made.aircraft(recipe), made.spec(recipe.sensors)
     )
-    return {s.channel: s for s in time_skews(problem, solve_ekf(problem))}
+    return {s.channel: s for s in time_skews(problem, solve_filter(problem, "ekf"))}
 
 
 @pytest.mark.parametrize(("channel", "delay"), [("alpha", 0.08), ("phi", 0.04), ("alpha", -0.08)])
