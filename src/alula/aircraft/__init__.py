@@ -5,7 +5,7 @@ from alula.aircraft.aircraft import Aircraft, Envelope
 from alula.aircraft.control_check import control_sign_check
 from alula.aircraft.control_signs import sign_factor
 from alula.aircraft.load import aircraft_schema, load_aircraft
-from alula.aircraft.mass import MassModel, MassProperties, check_inertia
+from alula.aircraft.mass import ROUNDING, MassModel, MassProperties, check_inertia
 from alula.aircraft.persons import person_inertia
 from alula.aircraft.propulsion import (
     ElectricMotor,
@@ -19,6 +19,7 @@ from alula.aircraft.tanks import Tank
 from alula.aircraft.weighing import Weighing, center_of_gravity
 
 __all__ = [
+    "ROUNDING",
     "Actuator",
     "Aircraft",
     "ElectricMotor",

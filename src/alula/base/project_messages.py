@@ -9,6 +9,7 @@ import hashlib
 import os
 import re
 import tomllib
+from dataclasses import replace
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
@@ -88,10 +89,13 @@ def explain(error: ValidationError, path: Path, text: str = "") -> list[Message]
         elif kind.endswith("_type"):
             expected = expected.removeprefix("input should be ")
         else:
-            expected = expected.removeprefix("input should ").removeprefix("input ")
+            expected = re.sub("^input (should )?(be )?", "", expected)
         message = Message(
             code, "error", f"{path}: {key}{_line(text, item['loc'])}", expected, found, do
         )
+        if item["loc"] == ("schema",) and isinstance(item["input"], str):
+            # another kind of file: what else differs would only hide that
+            return [replace(message, do="Name a file of that kind, or correct the key.")]
         if message not in messages:
             messages.append(message)
     return messages
@@ -127,7 +131,9 @@ def _key(location: tuple[int | str, ...]) -> str:
     for part in location:
         if isinstance(part, int):
             text += f"[{part + 1}]"
-        elif not re.search(r"[\[(]|^(int|str|float|bool|TimeSpec|list|dict)$", part):
+        elif not re.search(
+            r"[\[(]|^(int|str|float|bool|TimeSpec|list|dict|constrained-\w+)$", part
+        ):
             text += f".{part}" if text else part
     return text or "the file"
 

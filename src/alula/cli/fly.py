@@ -96,8 +96,9 @@ def text_of(found: Campaign) -> str:
     """What the command prints."""
     seconds = sum(w.plan.maneuver.end for w in found.maneuvers)
     size = sum(f.bytes for w in found.maneuvers for f in w.files)
+    count = len(found.maneuvers)
     lines = [
-        f"{len(found.maneuvers)} maneuvers flown, {seconds:.0f} s in the air, "
+        f"{count} maneuver{'s' * (count != 1)} flown, {seconds:.0f} s in the air, "
         f"{size / 1e6:.1f} MB in {found.folder}",
     ]
     if found.failed:

@@ -189,6 +189,15 @@ def aero_model(
             found=f"S = {reference.S}, b = {reference.b}, c = {reference.c}",
             do="Give the reference area, the full span and the chord of the coefficients.",
         )
+    for variable, (low, high) in (validity or {}).items():
+        if not low <= high:
+            raise refuse(
+                "bad_validity",
+                where=f"{where}, validity of {variable}",
+                expected="the lowest and the highest value, in that order",
+                found=f"[{low:g}, {high:g}]",
+                do="Give the range in which the values were found, in SI and rad.",
+            )
     return AeroModel(
         name=name,
         axes=axes,

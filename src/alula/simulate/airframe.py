@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from alula.aircraft import Aircraft
+from alula.aircraft import ROUNDING, Aircraft
 from alula.aircraft.actuators import Actuator
 from alula.aircraft.propulsion import (
     ElectricMotor,
@@ -161,9 +161,10 @@ def airframe_of(
 
 
 def _check_body(mass: float, inertia: Array) -> None:
+    """Rounded figures may miss the limit of a body by as much as in an aircraft file."""
     finite = np.isfinite(inertia).all() and np.isfinite(mass)
     moments = np.linalg.eigvalsh(inertia) if finite else np.full(3, np.nan)
-    possible = moments[0] > 0.0 and moments[0] + moments[1] >= moments[2] * (1.0 - 1e-9)
+    possible = moments[0] > 0.0 and moments[0] + moments[1] >= moments[2] * (1.0 - ROUNDING)
     if not (possible and mass > 0.0 and np.allclose(inertia, inertia.T)):
         raise refuse(
             "impossible_inertia",

@@ -110,7 +110,7 @@ def fly(
     turbulence: Turbulence | None = None,
     pilot: Pilot | None = None,
     stall: bool = True,
-    check: bool = False,
+    check: bool = True,
 ) -> SimulatedFlight:
     """Fly from x0 over times t (n,) of even spacing.
 
@@ -119,8 +119,8 @@ def fly(
     (n,) or one number; absent ones are zero; straight lines between samples, or held. substeps:
     RK4 steps per sample. gusts: (n, 6) ug vg wg m/s, pg qg rg rad/s, body axes. stall: False
     leaves the model's stall out. check: refuse a step that is too large for the fastest mode of
-    the start. Raises BadInput where time is not even, a control is unknown or not finite, or the
-    flight diverges.
+    the start, and warn of a coarse one. Raises BadInput where time is not even, a control is
+    unknown or not finite, the step is too large, or the flight diverges.
     """
     t, dt = even_times(t)
     n = len(t)

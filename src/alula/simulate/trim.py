@@ -11,11 +11,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from math import degrees
+from math import degrees, isfinite
 
 from alula.aircraft import Envelope
 from alula.base.arrays import Array, frozen
-from alula.base.messages import Message, warn
+from alula.base.messages import Message, refuse, warn
 from alula.model import AeroModel
 from alula.simulate.airframe import GRAVITY, Airframe, core_model
 from alula.simulate.condition import Condition, check_envelope
@@ -88,6 +88,15 @@ def trim(
     if envelope is not None and envelope.alpha is not None and not in_spite:
         bounds.setdefault("alpha", envelope.alpha)
     held = dict(controls or {})
+    for name, position in held.items():
+        if not isfinite(position):
+            raise refuse(
+                "bad_control",
+                where=f"trim, {condition.words}: {name}",
+                expected="a finite number",
+                found=f"{position:g}",
+                do="Give the position at which it is held.",
+            )
     problem = Problem(plant, condition, airframe, bounds, held, earth)
     found = problem.solve()
     if found.residual > TOLERANCE:

@@ -11,7 +11,7 @@ import io
 import json
 import os
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from hashlib import sha256
@@ -35,6 +35,7 @@ from alula.simulate.virtual_project import project_text
 from alula.simulate.virtual_sensing import channels_of, constants_of, errors_of, logged, sense
 
 Progress = Callable[[str], None]
+_LISTED = 5  # maneuvers that a message names
 
 
 @dataclass(frozen=True)
@@ -48,12 +49,15 @@ class WrittenFile:
 
 @dataclass(frozen=True)
 class Written:
-    """What became of one maneuver. files: log as CSV and Parquet, and the truth."""
+    """What became of one maneuver. files: log as CSV and Parquet, and the truth. messages: what
+    was noticed of trim and flight.
+    """
 
     plan: VirtualManeuver
     samples: int
     trim: Trim
     files: tuple[WrittenFile, ...]
+    messages: tuple[Message, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -100,10 +104,11 @@ def fly_plan(
     with NewFolder(folder) as new, ThreadPoolExecutor(workers) as pool:
         for name in ("logs", "truth"):
             (new / name).mkdir()
-        progress(f"trimming {len({(m.loading, m.condition) for m in asked})} conditions")
+        conditions = len({(m.loading, m.condition) for m in asked})
+        progress(f"trimming {conditions} condition{'s' * (conditions != 1)}")
         trims = _trims(plan, loadings, model, asked, pool)
         trimmed_at = time.perf_counter()
-        progress(f"flying {len(asked)} maneuvers")
+        progress(f"flying {len(asked)} maneuver{'s' * (len(asked) != 1)}")
 
         def one(item: VirtualManeuver) -> Written | tuple[Message, ...]:
             trim = trims[item.loading, item.condition]
@@ -143,8 +148,22 @@ def fly_plan(
     }  # fmt: skip
     return Campaign(
         folder, folder / PROJECT, written, failed, constants, seconds,
-        tuple(dict.fromkeys(m for x in loadings.values() for m in x.aircraft.messages)),
+        (*dict.fromkeys(m for x in loadings.values() for m in x.aircraft.messages),
+         *said_once(written)),
     )  # fmt: skip
+
+
+def said_once(written: Sequence[Written]) -> Iterator[Message]:
+    """What was noticed in flight, once for all maneuvers of which it is true, with each value."""
+    same: dict[tuple[str, str], list[tuple[str, Message]]] = {}
+    for w in written:
+        for m in w.messages:
+            same.setdefault((m.code, m.where), []).append((w.plan.maneuver.id, m))
+    for found in same.values():
+        first = found[0][1]
+        values = [f"{id}: {m.found}" for id, m in found]
+        more = f"; and in {len(values) - _LISTED} more" if len(values) > _LISTED else ""
+        yield replace(first, found="; ".join(values[:_LISTED]) + more)
 
 
 def _model_path(plan: Plan) -> Path:
@@ -216,6 +235,7 @@ def _write(flown: Flown, folder: Path) -> Written:
         len(motion.t),
         flown.trim,
         tuple(WrittenFile(name, len(data), sha256(data).hexdigest()) for name, data in files),
+        tuple(dict.fromkeys((*flown.trim.messages, *flown.flight.messages))),
     )
 
 
