@@ -91,6 +91,24 @@ def test_plan_is_flown_as_it_is(tmp_path: Path) -> None:
     assert flown.envelope["result"]["maneuvers"][0]["kind"] == "3211"
 
 
+def test_plans_schema_knows_what_a_plan_may_hold() -> None:
+    ran = alula("schema", "plan", "--json", "-")
+    assert ran.code == 0
+    schema = ran.envelope["result"]
+    assert set(plan_tree()) <= set(schema["properties"])
+    assert schema["additionalProperties"] is False
+
+
+@pytest.mark.parametrize("engines", ["given", "modeled"])
+def test_plan_keeps_the_engines_asked_for(tmp_path: Path, engines: str) -> None:
+    path = tmp_path / "designed.toml"
+    alula(
+        "plan", AIRCRAFT / "sportstar.toml", "--V", 45, "--h", 915, "--control", "de", "--kind",
+        "pulse", "--engines", engines, "--out", path, "--quiet",
+    )  # fmt: skip
+    assert f'engines = "{engines}"' in path.read_text().splitlines()
+
+
 def test_plan_where_the_aircraft_cannot_fly(tmp_path: Path) -> None:
     ran = alula("plan", AIRCRAFT / "sportstar.toml", "--V", 9, "--h", 915, "--json", "-")
     assert ran.code == 2

@@ -10,16 +10,9 @@ import pytest
 from cli.command import alula
 
 COMMANDS = (
-    "new",
-    "check",
-    "identify",
-    "compare",
-    "validate",
-    "trim",
-    "linearize",
-    "modes",
-    "schema",
-)
+    "new", "check", "identify", "compare", "plan", "fly", "validate", "export", "trim", "linearize",
+    "modes", "schema",
+)  # fmt: skip
 HEAVY = ("numpy", "pandas", "scipy", "matplotlib", "pyarrow", "h5py", "alula._core", "alula.core")
 PROBE = """
 import sys

@@ -77,6 +77,33 @@ def test_trim_says_it_in_degrees() -> None:
     assert " deg" in said
 
 
+def test_further_states_have_units_and_meaning() -> None:
+    lines = alula("trim", SPORTSTAR, *POINT).out.splitlines()
+    said = {line.split()[0]: line for line in lines}
+    assert said["omega"].endswith("rad/s speed of a propeller")
+    for side in ("left", "right"):
+        assert said[f"X_{side}"].endswith(f"flow on the {side} wing, 1: all")
+    behind = alula("trim", AIRCRAFT / "x8.toml", "--V", 18, "--h", 100, "--actuators").out
+    assert any(x.endswith("A s   taken from the battery") for x in behind.splitlines())
+    assert behind.count("deg  behind its actuator") == 2
+    fans = alula("trim", AIRCRAFT / "citation2.toml", "--V", 120, "--h", 5000).out
+    assert "power that a turbofan has reached" in fans
+
+
+def test_matrices_are_columns_that_do_not_touch() -> None:
+    said = alula("linearize", SPORTSTAR, *POINT).out
+    rows = [x.split() for x in said.splitlines() if x.startswith("  ")]
+    parts = [rows[:5], rows[5:]]
+    for part, states in zip(parts, (["V", "alpha", "q", "theta"], ["beta", "p", "r", "phi"]),
+                            strict=True):  # fmt: skip
+        assert part[0][:4] == states
+        for name, row in zip(states, part[1:], strict=True):
+            assert row[0] == name
+            assert len(row) == len(part[0]) + 1
+            [float(cell) for cell in row[1:] if cell != "|"]
+    assert "omega, X_left, X_right" in said
+
+
 def test_linearize_and_modes_tell_the_same_roots() -> None:
     matrices = result(run("linearize", *POINT), "linearization")
     found = result(run("modes", *POINT), "modes")

@@ -157,12 +157,21 @@ def text_of(linear: Linearization) -> str:
     lines = []
     for title, part in (("Longitudinal", linear.longitudinal()), ("Lateral", linear.lateral())):
         lines.append(f"{title} (SI, rad): rates by states | inputs")
-        head = "".join(f"{s:>11}" for s in part.states)
-        lines.append(f"{'':>8}{head}  |{''.join(f'{s:>11}' for s in part.inputs)}")
-        for name, a, b in zip(part.states, part.A.tolist(), part.B.tolist(), strict=True):
-            row = "".join(f"{_shown(v):>11}" for v in a)
-            lines.append(f"{name:>8}{row}  |{''.join(f'{_shown(v):>11}' for v in b)}")
+        head = [*part.states, "|", *part.inputs]
+        rows = [
+            [*map(_shown, a), "|", *map(_shown, b)]
+            for a, b in zip(part.A.tolist(), part.B.tolist(), strict=True)
+        ]
+        wide = [max(map(len, column)) for column in zip(head, *rows, strict=True)]
+        label = max(map(len, part.states))
+        for name, row in zip(("", *part.states), (head, *rows), strict=True):
+            cells = (f"{cell:>{width}}" for cell, width in zip(row, wide, strict=True))
+            lines.append(f"  {name:<{label}}  {'  '.join(cells)}")
         lines.append("")
+    shown = {*linear.longitudinal().states, *linear.lateral().states}
+    others = [name for name in linear.states if name not in shown]
+    if others:
+        lines.append(f"States beside these, held still here; --json has them: {', '.join(others)}")
     if linear.unsteady:
         rates = ", ".join(f"{n} {v:.4g}/s" for n, v in linear.unsteady.items())
         lines.append(f"Not a steady flight: {rates}")

@@ -97,7 +97,7 @@ def modes(
     command = Command("modes", json, seed, threads, quiet)
     with command.run():
         if plot is not None:
-            writable(plot)
+            writable(plot, "picture")
         from alula.simulate import judge, modes_of
 
         asked = Asked(

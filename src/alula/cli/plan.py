@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from alula.cli.condition import Engines, EnginesOption
 from alula.cli.contract import (
     Command,
     JsonOption,
@@ -51,6 +52,7 @@ def plan(
         Path | None,
         typer.Option(metavar="PLAN", help="Take sensors, rate and wind of this plan."),
     ] = None,
+    engines: EnginesOption = Engines.modeled,
     out: Annotated[
         Path | None,
         typer.Option(metavar="FILE", help="Write the plan there; `alula fly` flies it."),
@@ -84,6 +86,7 @@ def plan(
             V,
             h,
             requests=_requests(control or [], kind or []),
+            engines=engines.value,
             **given,
         )
         command.inputs = [
@@ -178,7 +181,7 @@ def plan_text(found: Design, folder: Path) -> str:
     ]
     for m in found.maneuvers:
         head += [
-            f"# {m.id}: {i.control} {i.kind}, {i.timing.mode.replace('_', ' ')} "
+            f"# {m.id}: {i.control} {i.kind}, {mode_words(i.timing.mode)} "
             f"{i.timing.frequency:.3g} rad/s, {i.amplitude * _DEG:.2f} deg, bounded by {i.bound}"
             for i in m.inputs
         ]
@@ -245,7 +248,7 @@ def text_of(found: Design) -> str:
         for i in m.inputs:
             lines.append(
                 f"  {i.control} {i.kind:<13}{i.amplitude * _DEG:>8.2f} deg (bounded by {i.bound}), "
-                f"step {i.timing.width:.2f} s for the {i.timing.mode.replace('_', ' ')}, "
+                f"step {i.timing.width:.2f} s for the {mode_words(i.timing.mode)}, "
                 f"{i.timing.frequency:.2f} rad/s"
             )
         low, high = m.reached["n"]
@@ -266,3 +269,8 @@ def text_of(found: Design) -> str:
         "right"
     )
     return "\n".join(lines)
+
+
+def mode_words(name: str) -> str:
+    """'Dutch roll', 'short period'."""
+    return name.replace("_", " ").replace("dutch", "Dutch")

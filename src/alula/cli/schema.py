@@ -1,4 +1,4 @@
-"""`alula schema`: JSON schemas of the project and the aircraft file, for editors."""
+"""`alula schema`: JSON schemas of the project, the aircraft and the plan file, for editors."""
 
 from __future__ import annotations
 
@@ -21,6 +21,7 @@ class Kind(StrEnum):
 
     project = "project"
     aircraft = "aircraft"
+    plan = "plan"
 
 
 def schema(
@@ -32,7 +33,7 @@ def schema(
     threads: ThreadsOption = 1,
     quiet: QuietOption = False,
 ) -> None:
-    """Print the JSON schema of a project or aircraft file.
+    """Print the JSON schema of a project, aircraft or plan file.
 
     Editors that know JSON schemas for TOML complete and check the files with it.
     """
@@ -44,6 +45,10 @@ def schema(
             from alula.base.project import Project
 
             found = Project.model_json_schema()
+        elif kind is Kind.plan:
+            from alula.simulate.virtual_plan import Plan
+
+            found = Plan.model_json_schema()
         else:
             from alula.aircraft import aircraft_schema
 

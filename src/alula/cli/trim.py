@@ -73,6 +73,18 @@ def trim(
         command.say(text_of(found))
 
 
+_FURTHER = {  # of the core's states beyond the rigid body: unit, what it is
+    "omega": ("rad/s", "speed of a propeller"),
+    "power": ("", "power that a turbofan has reached, 0 to 1"),
+    "charge": ("A s", "taken from the battery"),
+    "X": ("", "attached share of the flow, 1: all"),
+    "X_left": ("", "attached share of the flow on the left wing, 1: all"),
+    "X_right": ("", "attached share of the flow on the right wing, 1: all"),
+    "fuel_used": ("kg", "fuel burned"),
+    "dt": ("", "throttle behind its actuator"),
+}
+
+
 def text_of(found: Trim) -> str:
     """What the commands print of a trimmed flight: degrees, SI."""
     angles = {
@@ -81,7 +93,7 @@ def text_of(found: Trim) -> str:
     }  # fmt: skip
     lines = [f"Trimmed: {found.condition.words}"]
     lines += [f"  {name:<12}{degrees(value) + 0.0:>12.4f} deg" for name, value in angles.items()]
-    if found.turn_rate:
+    if abs(found.turn_rate) > 1e-9:
         lines.append(f"  {'turn rate':<12}{degrees(found.turn_rate):>12.4f} deg/s")
     lines.append(f"  {'load factor':<12}{found.load_factor:>12.4f}")
     for name in ("de", "da", "dr", "df"):
@@ -90,5 +102,14 @@ def text_of(found: Trim) -> str:
         lines.append(f"  {'throttle':<12}{found.controls['dt']:>12.4f}")
     if "thrust" in found.free or found.thrust:
         lines.append(f"  {'thrust':<12}{found.thrust:>12.4g} N")
-    lines += [f"  {name:<12}{value:>12.5g}" for name, value in found.further.items()]
+    lines += [_further(name, value) for name, value in found.further.items()]
     return "\n".join(lines)
+
+
+def _further(name: str, value: float) -> str:
+    """A further state with its unit and meaning; 'omega_2' is the second engine's."""
+    plain = name if name in _FURTHER else name.rstrip("0123456789").rstrip("_")
+    if plain in ("de", "da", "dr", "df"):
+        return f"  {name:<12}{degrees(value) + 0.0:>12.4f} deg  behind its actuator"
+    unit, words = _FURTHER.get(plain, ("", ""))
+    return f"  {name:<12}{value:>12.5g} {unit:<6}{words}".rstrip()

@@ -8,10 +8,13 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
+
+from pydantic import ValidationError
 
 from alula.aircraft import Aircraft
-from alula.base.messages import Message, refuse, warn
+from alula.base.messages import BadInput, Message, refuse, warn
+from alula.base.project_messages import explain
 from alula.model import AeroModel
 from alula.plan.amplitude import Limits, largest_amplitude, limits_of, outside
 from alula.plan.information import Flown, Prediction, predict
@@ -81,8 +84,11 @@ class Design:
 
 
 def planned(tree: Mapping[str, Any]) -> Plan:
-    """The plan of a tree of tables, as `load_plan` reads it from a file."""
-    return Plan.model_validate(dict(tree))
+    """The plan of a tree of tables; raises BadInput as `load_plan` does."""
+    try:
+        return Plan.model_validate(dict(tree))
+    except ValidationError as error:
+        raise BadInput(*explain(error, Path("plan"))) from None
 
 
 def design(
@@ -96,12 +102,14 @@ def design(
     rate: float = 100.0,
     sensors: Mapping[str, Any] | None = None,
     wind: Sequence[float] = (0.0, 0.0, 0.0),
+    engines: Literal["modeled", "given"] = "modeled",
 ) -> Design:
     """Design maneuvers from level flight at V (m/s, true) and h (m) for an aircraft file.
 
     requests: (control, kind) for maneuvers of one input each; none: an elevator 3-2-1-1, and a
     bank to bank with a rudder doublet behind it, as far as the model has these controls. sensors:
-    tables of the plan file; default ordinary flight-test instruments. Raises BadInput where the
+    tables of the plan file; default ordinary flight-test instruments. engines: of the aircraft
+    file, or the trimmed thrust stays. Raises BadInput where the
     condition does not trim, or a control is not in the model.
     """
     tree: dict[str, Any] = {
@@ -111,6 +119,7 @@ def design(
         "model": str(model_path),
         "rate": rate,
         "wind": [float(w) for w in wind],
+        "engines": engines,
         "conditions": [{"V": float(V), "h": float(h)}],
         "maneuvers": [{"id": "trim"}],
         "sensors": {k: dict(v) for k, v in (SENSORS if sensors is None else sensors).items()},
