@@ -29,7 +29,9 @@ def test_readme_commands_exist() -> None:
     for target in targets:
         assert re.search(rf"^{target}:", makefile, re.M)
     commands = [line.split() for line in lines if line.startswith("alula ")]
-    assert {words[1] for words in commands} == {"new", "check", "identify"}
+    assert {words[1] for words in commands} == {
+        "new", "check", "identify", "modes", "plan", "fly", "validate", "export",
+    }  # fmt: skip
     for words in commands:
         said = run(["alula", words[1], "--help"], ROOT)
         for option in (word for word in words if word.startswith("--")):
@@ -96,6 +98,39 @@ def test_tutorial(tmp_path: Path) -> None:
         assert (tmp_path / "tutorial" / name).stat().st_size > 0
 
 
+def test_flying_tutorial(tmp_path: Path) -> None:
+    """Every command, every edit, in order; each ends with the code that the page says."""
+    (tmp_path / "aircraft").symlink_to(ROOT / "aircraft")
+    text = (ROOT / "docs/tutorial_flying.md").read_text()
+    steps = re.findall(r"^```(sh|toml)\n(.*?)^```", text, re.S | re.M)
+    used = []
+    for language, block in steps:
+        if language == "toml":
+            plan = tmp_path / "plan.toml"
+            plan.write_text(plan.read_text() + "\n" + block)
+            continue
+        for line in block.splitlines():
+            if line.startswith("source "):
+                continue
+            words = line.split()
+            used.append(words[1])
+            done = run(words, tmp_path)
+            # the page says that the plan will not tell one parameter, and which
+            assert done.returncode == (1 if words[1] == "plan" else 0), done.stdout + done.stderr
+            if words[1] == "plan":
+                (lost,) = [x for x in done.stdout.splitlines() if x.endswith("not told")]
+                assert f"`{lost.split()[0]}`" in text
+    assert used == ["modes", "plan", "fly", "identify", "validate", "export"]
+    result = json.loads((tmp_path / "result.json").read_text())
+    found = {p["name"]: p for p in result["result"]["parameters"]}
+    for name in ("Cm_alpha", "Cl_p"):
+        low, high = found[name]["ci95"]
+        assert low < found[name]["truth"] < high
+        assert f"{found[name]['truth']:g}" in text
+    for name in ("modes.svg", "report.html", "validation.html", "identified.dml"):
+        assert (tmp_path / name).stat().st_size > 0
+
+
 def test_python_page(tmp_path: Path, monkeypatch) -> None:
     """Its blocks run in order, in a folder with the demo's logs."""
     monkeypatch.setenv("MPLBACKEND", "Agg")
@@ -112,7 +147,20 @@ def test_python_page(tmp_path: Path, monkeypatch) -> None:
 
 @pytest.mark.parametrize(
     "command",
-    ["new", "check", "identify", "compare", "validate", "trim", "linearize", "modes", "schema"],
+    [
+        "new",
+        "check",
+        "identify",
+        "compare",
+        "plan",
+        "fly",
+        "validate",
+        "export",
+        "trim",
+        "linearize",
+        "modes",
+        "schema",
+    ],
 )
 def test_every_option_is_on_the_page(command: str) -> None:
     page = (ROOT / "docs/command_line.md").read_text()
@@ -123,7 +171,13 @@ def test_every_option_is_on_the_page(command: str) -> None:
         assert f"`{option}" in page
 
 
-BY_NAME = ("mismatch", "formulas", "maneuvers", "versions", "timing_s")  # whose keys name sensors and the like
+BY_NAME = (
+    "mismatch",
+    "formulas",
+    "maneuvers",
+    "versions",
+    "timing_s",
+)  # whose keys name sensors and the like
 
 
 def keys(value: object) -> set[str]:
