@@ -13,6 +13,7 @@ from alula.report.numbers import MISSING, number, shown, span
 def maneuvers(report: ReportInput) -> Html:
     """One row per maneuver; held-out ones are marked."""
     cards = {m.id: m for card in report.cards for m in card.maneuvers}
+    apart = any(m.log != m.id for m in report.maneuvers)  # a log that goes by the maneuver's name
     rows = []
     for m in report.maneuvers:
         card = cards.get(m.id)
@@ -20,7 +21,7 @@ def maneuvers(report: ReportInput) -> Html:
             [
                 tag("code", m.id),
                 m.kind.replace("_", " "),
-                m.log,
+                *([m.log] if apart else []),
                 span(m.start, m.end),
                 card.samples if card else MISSING,
                 len(card.gaps) if card else MISSING,
@@ -31,11 +32,12 @@ def maneuvers(report: ReportInput) -> Html:
             ]
         )
     return table(
-        "Maneuvers. One that is held out was never seen by the fit and serves to validate it.",
+        "Maneuvers. One that is held out was never seen by the fit and serves to validate it."
+        + ("" if apart else " Each is a log of its own, of the same name."),
         [
             "Maneuver",
             "Kind",
-            "Log",
+            *(["Log"] if apart else []),
             "Window, s",
             "Samples",
             "Gaps",
@@ -45,7 +47,7 @@ def maneuvers(report: ReportInput) -> Html:
             "Entry condition",
         ],
         rows,
-        numeric=(3, 4, 5),
+        numeric=(3, 4, 5) if apart else (2, 3, 4),
     )
 
 
