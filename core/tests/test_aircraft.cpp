@@ -93,9 +93,9 @@ TEST(Aircraft, MomentMovesWithTheReferencePoint) {
   const auto x = level_flight<double>();
   const auto at = alula::place(x, a.earth, a.gravity);
   a.reference_point = {};
-  const auto at_cg = alula::loads(x, Input{}, a, at);
+  const auto at_cg = alula::loads(x, Input{}, a, a.wind, at);
   a.reference_point = {-0.2, 0, 0};
-  const auto aft = alula::loads(x, Input{}, a, at);
+  const auto aft = alula::loads(x, Input{}, a, a.wind, at);
   EXPECT_DOUBLE_EQ(aft.force.z, at_cg.force.z);
   EXPECT_NEAR(aft.moment.y, at_cg.moment.y + 0.2 * at_cg.force.z, 1e-9);  // of about 1000 N m
 }
@@ -105,13 +105,13 @@ TEST(Aircraft, GustIsWindInBodyAxes) {
   auto a = light_aircraft<double>();
   auto x = level_flight<double>();
   const auto at = alula::place(x, a.earth, a.gravity);
-  const auto with_wind = alula::loads(x, Input{}, a, at);
+  const auto with_wind = alula::loads(x, Input{}, a, a.wind, at);
   const auto v = at.R_BN * a.wind.steady;
   a.wind = {};
   const Input gust{0, 0, 0, 0, 0, 0, v.x, v.y, v.z, 0.1, 0.05, -0.05};
-  const auto with_gust = alula::loads(x, gust, a, at);
+  const auto with_gust = alula::loads(x, gust, a, a.wind, at);
   x[10] = x[11] = x[12] = 0.0;
-  const auto none = alula::loads(x, Input{0, 0, 0, 0, 0, 0, v.x, v.y, v.z}, a, at);
+  const auto none = alula::loads(x, Input{0, 0, 0, 0, 0, 0, v.x, v.y, v.z}, a, a.wind, at);
   EXPECT_NEAR(with_gust.force.x, with_wind.force.x, 1e-9);
   EXPECT_NEAR(with_gust.flow.beta, with_wind.flow.beta, 1e-15);
   EXPECT_NEAR(with_gust.moment.x, none.moment.x, 1e-9);
