@@ -18,7 +18,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
+from scipy.special import fdtrc
 
 from alula.base.arrays import Array
 from alula.identify.regression import Regression
@@ -72,7 +72,7 @@ def _test(left: Array, cells: Array, dof: tuple[int, int]) -> LackOfFit:
     )
     misfit = max(float(left @ left) - pure, 0.0)
     f = misfit / dof[0] / (pure / dof[1]) if pure > 0.0 else np.inf
-    p = float(stats.f.sf(f, *dof))
+    p = float(fdtrc(*dof, f))
     words = (
         f"the model misses something that repeats (F {f:.2g}, p {p:.2g})"
         if p < 0.05
