@@ -1,0 +1,1 @@
+"""Derivatives from geometry: lattice, bodies, handbook formulas, strips and propellers."""
