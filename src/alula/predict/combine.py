@@ -13,6 +13,7 @@ from collections.abc import Mapping, Sequence
 from math import hypot, sqrt
 
 from alula.base.messages import refuse
+from alula.predict.axes import along
 from alula.predict.derivatives import Derivatives, Estimate
 
 # Root mean square of (predicted/flown - 1) over C_L_alpha and C_L_de by Tornado, AVL and Datcom,
@@ -32,11 +33,12 @@ PAIRS = {
 def combine(
     predictions: Sequence[Derivatives], *, prefer: Mapping[str, str] | None = None
 ) -> Derivatives:
-    """One prediction of several. prefer: by derivative, the method whose value is taken.
+    """One prediction of several, in stability axes. prefer: the method taken, by derivative.
 
     A preferred value keeps the spread of all methods in its error. Raises BadInput for no
     prediction, two of one method, and a preferred method that is none of them.
     """
+    predictions = [along(d, "stability") for d in predictions]
     methods = [d.method for d in predictions]
     _check(methods, prefer or {})
     names = dict.fromkeys(name for d in predictions for name in d.values)
@@ -44,17 +46,24 @@ def combine(
     conditions = {
         f"{d.method}: {key}": text for d in predictions for key, text in d.conditions.items()
     }
-    angle = next(
-        (d.conditions["alpha_deg"] for d in predictions if "alpha_deg" in d.conditions), None
-    )
-    if angle is not None:
-        conditions["alpha_deg"] = angle
     notes = [f"{d.method}: {note}" for d in predictions for note in d.notes]
+    angles = {
+        d.method: d.conditions["alpha_deg"] for d in predictions if "alpha_deg" in d.conditions
+    }
+    if angles:
+        conditions["alpha_deg"] = next(iter(angles.values()))
+        if len({round(float(a), 1) for a in angles.values()}) > 1:
+            said = ", ".join(f"{m} {a} deg" for m, a in angles.items())
+            notes.append(f"predicted at different angles of attack: {said}")
     return Derivatives(" and ".join(methods), values, conditions, tuple(notes))
 
 
 def added(method: str, parts: Sequence[Derivatives]) -> Derivatives:
-    """Parts that add up, such as lattice and bodies; errors as of independent parts."""
+    """Parts that add up, such as lattice and bodies; errors as of independent parts.
+
+    The axes are the first one's.
+    """
+    parts = [along(d, parts[0].axes) for d in parts]
     names = dict.fromkeys(name for d in parts for name in d.values)
     values = {}
     for name in names:
@@ -65,7 +74,8 @@ def added(method: str, parts: Sequence[Derivatives]) -> Derivatives:
             " + ".join(e.source for e in given),
         )
     conditions = {k: v for d in reversed(parts) for k, v in d.conditions.items()}
-    return Derivatives(method, values, conditions, tuple(n for d in parts for n in d.notes))
+    notes = tuple(n for d in parts for n in d.notes)
+    return Derivatives(method, values, conditions, notes, parts[0].axes)
 
 
 def as_flown(prediction: Derivatives) -> dict[str, Estimate]:

@@ -1,57 +1,15 @@
-"""Fuselage in the wing's flow: pitching moment, side force and yawing moment over the angle.
+"""Fuselage in sideslip: side force and yawing moment. In pitch see `body_carry_over`.
 
-Munk, NACA TR 184, 1924; Multhopp, NACA TM 1036, 1942; USAF Datcom, sec. 5.2.1.1; Raymer ch. 16.
+Munk, NACA TR 184, 1924; USAF Datcom, sec. 5.2.1.1; Raymer ch. 16.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from math import pi
-
 import numpy as np
 
-from alula.base.arrays import Array
 from alula.predict.body_shape import BodyShape
 from alula.predict.handbook import Found, Range, found
 from alula.predict.slender_body import apparent_mass_factor
-
-
-def pitching(
-    body: BodyShape,
-    upwash: Callable[[float], float],
-    leading: float,
-    trailing: float,
-    tail: float,
-    downwash: float,
-    area: float,
-    chord: float,
-) -> Found:
-    """Cm_alpha of the body, Multhopp's strips: pi/2 times the integral of w2 (d eps/d alpha + 1).
-
-    upwash: d epsilon/d alpha at a distance (m) ahead of the wing's quarter chord. leading,
-    trailing: x of the wing root's edges. tail: x where the downwash gradient `downwash` holds;
-    between the trailing edge and it the flow turns straight from the wing's direction to it.
-    area, chord: the reference.
-    """
-    nose = body.x_nose
-    quarter = leading - 0.25 * (leading - trailing)
-
-    def ahead(s: Array) -> Array:
-        turned = np.array([1.0 + upwash(float(nose - si - quarter)) for si in s])
-        return np.asarray(body.width2(s) * turned)
-
-    def behind(s: Array) -> Array:
-        share = np.clip((trailing - nose + s) / (trailing - tail), 0.0, 1.0)
-        return np.asarray(body.width2(s) * share * (1.0 - downwash))
-
-    total = body.integral(ahead, high=nose - leading) + body.integral(behind, low=nose - trailing)
-    value = 0.5 * pi / (area * chord) * total
-    return found(
-        value,
-        0.25 * value,
-        "Multhopp, NACA TM 1036; se 25 %, our judgment for bodies that are not slender",
-        (Range("fineness of the body", body.length / body.diameter, 4.0, 20.0),),
-    )
 
 
 def side_force(body: BodyShape, wing_height: float, depth: float, area: float) -> Found:

@@ -7,7 +7,7 @@ from math import cos, sin, sqrt
 
 import numpy as np
 
-from alula.aircraft.geometry import Geometry
+from alula.aircraft.geometry import Body, Geometry
 from alula.base.arrays import Array
 from alula.base.messages import refuse
 from alula.predict.body_shape import BodyShape
@@ -28,7 +28,8 @@ class Layout:
 
     behind: chords c from the reference point back to the wing's quarter chord. wing_lift: C_L_alpha
     of wing with body, on S. tail_lift: eta a_t S_t/S of the tailplane, None without one; arm:
-    m, its quarter chord behind the reference. notes: what was left out.
+    m, its quarter chord behind the reference. outline: the largest body
+    as the file has it. notes: what was left out.
     """
 
     S: float
@@ -45,6 +46,7 @@ class Layout:
     downwash: Found
     fin: SurfaceShape | None
     body: BodyShape | None
+    outline: Body | None
     notes: tuple[str, ...]
 
     @property
@@ -112,8 +114,8 @@ def layout(
         )
     wing = wing_line(surface_shape(surface, geometry), flow.mach)
     shape = wing.shape
-    bodies = [BodyShape(x) for x in geometry.bodies]
-    body = max(bodies, key=lambda x: x.volume, default=None)
+    outline = max(geometry.bodies, key=lambda x: BodyShape(x).volume, default=None)
+    body = None if outline is None else BodyShape(outline)
     factor = exactly(1.0, "") if body is None else body_factor(body.diameter, shape.span)
     named = {"wing": surface, "tailplane": geometry.surface("tailplane"),
              "fin": geometry.surface("fin")}  # fmt: skip
@@ -122,7 +124,7 @@ def layout(
         for s in geometry.surfaces
         if s not in named.values()
     ]
-    if len(bodies) > 1:
+    if len(geometry.bodies) > 1:
         notes.append("only the largest body is counted")
     tailplane, fin = named["tailplane"], named["fin"]
     tail, tail_lift, arm, downwash = None, None, 0.0, exactly(0.0, "")
@@ -136,7 +138,7 @@ def layout(
         float(point[0] - shape.quarter[0]) / c,
         tail, tail_lift, arm, downwash,
         None if fin is None else surface_shape(fin, geometry),
-        body, tuple(notes),
+        body, outline, tuple(notes),
     )  # fmt: skip
 
 

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from alula.predict.alpha_dot import tail_rates
-from alula.predict.downwash import horseshoe
-from alula.predict.fuselage import pitching
-from alula.predict.handbook import Found, exactly, plus, scaled, times
+from alula.predict.body_carry_over import body_at_wing
+from alula.predict.handbook import Found, Range, exactly, found, plus, scaled, times
 from alula.predict.layout import Layout, lift_at_zero
 from alula.predict.pitch_rate import tail, wing
 from alula.predict.sums import Sums
@@ -53,18 +50,19 @@ def _section_moment(plan: Layout) -> Found:
 def _body(plan: Layout) -> Found:
     """Cm_alpha of the body in the wing's flow."""
     assert plan.body is not None
+    assert plan.outline is not None
     w = plan.wing.shape
     leading = float(w.root[0])
     trailing = leading - w.root_chord
-    tail = plan.body.x_nose - plan.body.length
-    if plan.tail is not None:
-        tail = min(float(plan.tail.shape.quarter[0]), trailing - 0.1 * w.root_chord)
-    gradient = plan.downwash.value if plan.tail is not None else 0.0
-
-    def upwash(ahead: float) -> float:
-        return -horseshoe(plan.wing.slope.value, w.aspect, w.span, -ahead).value
-
-    return pitching(
-        plan.body, upwash, leading, trailing, tail, float(np.clip(gradient, 0.0, 1.0)),
-        plan.S, plan.c,
-    )  # fmt: skip
+    tail = None
+    if plan.tail is not None and float(plan.tail.shape.quarter[0]) < trailing:
+        tail = (float(plan.tail.shape.quarter[0]), plan.downwash.value)
+    value, _ = body_at_wing(
+        plan.outline, w.plan, (leading, trailing), plan.wing.slope.value, plan.S, plan.c, tail
+    )
+    return found(
+        value,
+        0.25 * value,
+        "Multhopp, NACA TM 1036; se 25 %, our judgment for bodies that are not slender",
+        (Range("fineness of the body", plan.body.length / plan.body.diameter, 4.0, 20.0),),
+    )

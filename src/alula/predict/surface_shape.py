@@ -12,7 +12,7 @@ from alula.aircraft.geometry import Airfoil, ControlSurface, Geometry, LiftingSu
 from alula.base.arrays import Array
 from alula.predict.handbook import Found
 from alula.predict.lift_slope import SECTION, SECTION_SE
-from alula.predict.planform import planform
+from alula.predict.planform import Planform, planform
 
 STEPS = 400  # stations over the half span of the tables that the lifting line reads
 
@@ -51,6 +51,7 @@ class SurfaceShape:
     local_zero_lift: Array
     local_moment: Array
     controls: tuple[ControlSurface, ...]
+    plan: Planform
 
     def chord(self, eta: Array) -> Array:
         """Chord, m, at |2 y/b| (k,) of a mirrored surface."""
@@ -111,6 +112,7 @@ def surface_shape(surface: LiftingSurface, geometry: Geometry) -> SurfaceShape:
         local_zero_lift=np.interp(where, arc, [_zero_lift(a) for a in foils]),
         local_moment=np.interp(where, arc, [_moment(a) for a in foils]),
         controls=surface.controls,
+        plan=plan,
     )
 
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from math import cos, radians, sin
+from math import radians
 
 import numpy as np
 
 from alula.base.arrays import Array
 from alula.base.messages import refuse
 from alula.model import AeroModel, Reference, aero_model
+from alula.predict.axes import COEFFICIENTS, turn
 from alula.predict.combine import PAIRS
 from alula.predict.derivatives import Derivatives
 
@@ -19,7 +19,6 @@ VALIDITY = {"alpha": (-0.10, 0.21), "beta": (-0.17, 0.17)}
 _TERMS = {"0": "1", "alpha": "alpha", "alpha2": "alpha^2", "beta": "beta",
           "p": "phat", "q": "qhat", "r": "rhat",
           "de": "de", "da": "da", "dr": "dr", "df": "df"}  # fmt: skip
-_COEFFICIENTS = ("CD", "CY", "CL", "Cl", "Cm", "Cn")
 
 
 def to_model(
@@ -43,10 +42,15 @@ def to_model(
             do="Predict with a method that gives the whole aircraft's lift.",
         )
     alpha = radians(float(prediction.conditions.get("alpha_deg", "0")))
-    names, vector, covariance = _to_body(values, variances, alpha)
+    given = list(values)
+    names, matrix = turn(given, alpha if prediction.axes == "stability" else 0.0)
+    order = sorted(range(len(names)), key=lambda i: _order(names[i]))
+    names, matrix = [names[i] for i in order], matrix[order]
+    vector = matrix @ np.array([values[n] for n in given])
+    covariance = matrix @ np.diag([variances[n] for n in given]) @ matrix.T
     formulas = {
         c: " + ".join(text for label, text in _TERMS.items() if f"{c}_{label}" in names)
-        for c in _COEFFICIENTS
+        for c in COEFFICIENTS
         if any(n.startswith(f"{c}_") for n in names)
     }
     return aero_model(
@@ -55,7 +59,7 @@ def to_model(
         dict(zip(names, vector.tolist(), strict=True)),
         reference,
         axes="stability",
-        covariance=covariance,
+        covariance=0.5 * (covariance + covariance.T),
         reference_point=reference_point,
         validity=VALIDITY,
         provenance={
@@ -92,43 +96,13 @@ def _lumped(prediction: Derivatives) -> tuple[dict[str, float], dict[str, float]
     for name, e in prediction.values.items():
         target, sign = lags.get(name, (name, 1.0))
         coefficient, _, label = target.partition("_")
-        if coefficient not in _COEFFICIENTS or label not in _TERMS:
+        if coefficient not in COEFFICIENTS or label not in _TERMS:
             continue
         values[target] = values.get(target, 0.0) + sign * e.value
         se[target] = se.get(target, 0.0) + e.se  # of one tail: they go together
     return values, {n: s**2 for n, s in se.items()}
 
 
-def _to_body(
-    values: Mapping[str, float], variances: Mapping[str, float], alpha: float
-) -> tuple[list[str], Array, Array]:
-    """Names, values (k,) and covariance (k, k) after the turn of lateral axes by alpha.
-
-    p_s = p cos + r sin, r_s = r cos - p sin; l = l_s cos - n_s sin, n = l_s sin + n_s cos.
-    """
-    c, s = cos(alpha), sin(alpha)
-    moment = {"Cl": {"Cl": c, "Cn": s}, "Cn": {"Cl": -s, "Cn": c}, "CY": {"CY": 1.0}}
-    rate = {"p": {"p": c, "r": s}, "r": {"p": -s, "r": c}}
-    rows: dict[str, dict[str, float]] = {}
-    for name in values:
-        coefficient, _, label = name.partition("_")
-        for to, factor in moment.get(coefficient, {coefficient: 1.0}).items():
-            for onto, share in rate.get(label, {label: 1.0}).items():
-                # Only lateral rates turn: a longitudinal coefficient has none of them.
-                weight = factor * share
-                if weight != 0.0:
-                    rows.setdefault(f"{to}_{onto}", {})[name] = weight
-    names = sorted(rows, key=_order)
-    given = list(values)
-    turn = np.zeros((len(names), len(given)))
-    for i, n in enumerate(names):
-        for source, weight in rows[n].items():
-            turn[i, given.index(source)] = weight
-    vector = turn @ np.array([values[n] for n in given])
-    covariance = turn @ np.diag([variances[n] for n in given]) @ turn.T
-    return names, vector, 0.5 * (covariance + covariance.T)
-
-
 def _order(name: str) -> tuple[int, int]:
     coefficient, _, label = name.partition("_")
-    return _COEFFICIENTS.index(coefficient), list(_TERMS).index(label)
+    return COEFFICIENTS.index(coefficient), list(_TERMS).index(label)
