@@ -176,6 +176,7 @@ def report_of(job: Job, date: str, seed: int | None) -> ReportInput:
         path=str(checked.project.path),
         date=date,
         aircraft=checked.aircraft.summary(),
+        shape=checked.aircraft,
         cards=checked.cards,
         maneuvers=checked.maneuvers,
         reconstruction=job.reconstruction,
