@@ -25,6 +25,7 @@ from alula.identify.recursive_equation_error import identify_recursive
 from alula.identify.regression_choice import OPTIONS as REGRESSION
 from alula.identify.regression_choice import regression_choice
 from alula.identify.task import LONGITUDINAL
+from alula.identify.usual_outputs import USUAL_OUTPUTS
 
 Measured = tuple[tuple[MeasuredManeuver, ...], tuple[Message, ...], list[Shifts]]
 
@@ -129,12 +130,6 @@ def _frequency(task: IdentifyTask) -> Identification:
     return identify_frequency_regression(task.data, task.models, **options, truth=task.truth)
 
 
-# Which readings tell of which motion, where the project does not choose.
-OUTPUTS: Mapping[str, tuple[str, ...]] = {
-    "longitudinal": ("V", "alpha", "theta", "q", "ax", "az"),
-    "lateral": ("beta", "p", "r", "phi", "ay"),
-    "six": ("V", "alpha", "beta", "p", "q", "r", "phi", "theta", "ax", "ay", "az"),
-}
 LATERAL_OUTPUTS = frozenset({"beta", "p", "r", "phi", "ay", "pdot", "rdot"})
 
 
@@ -249,13 +244,13 @@ def _outputs(
         if not split:
             return list(asked)
         return [n for n in asked if (n in LATERAL_OUTPUTS) == (name == "lateral")]
-    made = [n for n in OUTPUTS[name] if n in states or n not in STATE_SETS["six"]]
+    made = [n for n in USUAL_OUTPUTS[name] if n in states or n not in STATE_SETS["six"]]
     found = [n for n in made if all(n in m.outputs for m in maneuvers)]
     if not found:
         raise refuse(
             "no_output",
             where=f"output error, {name}",
-            expected="readings of " + ", ".join(OUTPUTS[name]),
+            expected="readings of " + ", ".join(USUAL_OUTPUTS[name]),
             found="none that every maneuver has",
             do="Map their channels.",
         )
