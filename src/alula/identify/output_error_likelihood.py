@@ -106,21 +106,14 @@ class FullCovarianceLikelihood(OutputErrorLikelihood):
             )
 
     def blocks(self, theta: Array) -> list[Whitened]:
-        """Outputs whitened together; error bars by each output's own autocorrelation."""
+        """Outputs whitened together, their residuals' correlation over time included."""
         runs = self._runs(theta)
-        R = self._covariance([v for v, _ in runs])
-        inverse = np.linalg.inv(R)
-        root = np.linalg.cholesky(inverse).T
-        size = np.sqrt(np.diag(R))
+        root = np.linalg.cholesky(np.linalg.inv(self._covariance([v for v, _ in runs]))).T
         out = []
-        for v, J in runs:
-            white, weighted = (
-                np.einsum("po,noi->npi", root, J),
-                np.einsum("po,noi->npi", inverse, J),
-            )
-            for o in range(len(R)):
-                own = (weighted[:, o] * size[o], v[:, o] / size[o])
-                out.append(Whitened(white[:, o], v @ root[o], coloured=own))
+        for i, (v, J) in enumerate(runs):
+            white = np.einsum("po,noi->npi", root, J)
+            for o in range(len(root)):
+                out.append(Whitened(white[:, o], v @ root[o], together=i))
         return out
 
     def _runs(self, theta: Array) -> list[tuple[Array, Array]]:
