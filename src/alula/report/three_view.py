@@ -234,7 +234,7 @@ def _named(
 ) -> Html:
     """A name beside its mark where neither mark nor other name stands, else led there by a line."""
     wide, high = 7.4 * len(name) + 2.0, 13.0
-    places = [(x + 9.0, y), (x - 9.0 - wide, y)]
+    places = [(x + 11.0, y), (x - 11.0 - wide, y)]
     for far in (18.0, 32.0, 46.0, 60.0, 74.0):
         for up in (-far, far):
             places += [(x + 6.0 + 0.4 * far, y + up), (x - 6.0 - 0.4 * far - wide, y + up)]
