@@ -7,19 +7,21 @@ flight shows Cm_q + Cm_alphadot, and its drag is a straight line over the angle 
 
 from __future__ import annotations
 
+from dataclasses import replace
+from math import radians
 from pathlib import Path
 
 import numpy as np
 
 from alula.aircraft import Aircraft, load_aircraft
 from alula.model import Reference, load_model
-from alula.predict.body_carry_over import bodies_at_wing
-from alula.predict.combine import added, as_flown, combine
+from alula.predict.axes import along
+from alula.predict.combine import as_flown, combine
 from alula.predict.derivatives import Derivatives
 from alula.predict.flow import Flow
+from alula.predict.lattice_and_bodies import lattice_and_bodies
 from alula.predict.profile_drag import DragItem
 from alula.predict.semi_empirical import semi_empirical
-from alula.predict.slender_body import slender_bodies
 
 AIRCRAFT = Path(__file__).parents[2] / "aircraft"
 BAND = (0.87, 1.17)  # Dittrich 2016, sec. 4.6.3: lift as predicted by Tornado, AVL and Datcom
@@ -32,22 +34,20 @@ GEAR = (DragItem("wheels", 0.30, 0.125), DragItem("legs", 0.50, 0.060))
 def predictions(aircraft: Aircraft) -> list[Derivatives]:
     """Handbook formulas, and lattice with bodies where the lattice is built."""
     handbook = semi_empirical(aircraft, FLOW, items=GEAR)
-    lattice = lattice_with_bodies(aircraft)
-    return [handbook] if lattice is None else [lattice, handbook]
+    lattice = lattice_at(aircraft, radians(float(handbook.conditions["alpha_deg"])))
+    return [handbook] if lattice is None else [lattice_and_bodies(aircraft, lattice), handbook]
 
 
-def lattice_with_bodies(aircraft: Aircraft) -> Derivatives | None:
-    """The vortex lattice and what bodies add to it."""
+def lattice_at(aircraft: Aircraft, alpha: float) -> Derivatives | None:
+    """The vortex lattice at an angle of attack, in stability axes."""
     try:
         from alula.predict.vortex_lattice import vortex_lattice
     except ImportError:
         return None
     reference = Reference(aircraft.S, aircraft.b, aircraft.c)
     assert aircraft.geometry is not None
-    lattice = vortex_lattice(aircraft.geometry, reference, aircraft.reference_point)
-    wings = lattice.as_derivatives()
-    joined = bodies_at_wing(aircraft, wings.values["CL_alpha"].value)
-    return added("lattice and bodies", [wings, slender_bodies(aircraft), joined])
+    found = vortex_lattice(aircraft.geometry, reference, aircraft.reference_point, alpha=alpha)
+    return along(replace(found.as_derivatives(), axes="model"), "stability")
 
 
 def straight_drag(prediction: Derivatives, zero: float, slope: float) -> tuple[float, float]:

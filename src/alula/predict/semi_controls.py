@@ -52,11 +52,15 @@ def controls(plan: Layout, alpha: float, sums: Sums) -> None:
 def _flap(shape: SurfaceShape, control: ControlSurface) -> _Flap:
     inside, hinge = shape.within(control)
     aspect = shape.aspect
+    known: float | None = getattr(control, "c_l_delta", None)
+    couple: float | None = getattr(control, "c_m_delta", None)
     turn, turned = np.zeros_like(shape.eta), np.zeros_like(shape.eta)
     for i in np.flatnonzero(inside):
-        theory = turning(float(hinge[i]))
+        theory = turning(float(hinge[i])) if known is None else known / shape.slope.value
         turn[i] = theory * low_aspect(theory, aspect)
-        turned[i] = moment(float(hinge[i]))
+        turned[i] = moment(float(hinge[i])) if couple is None else couple
+    if known is not None:
+        return _Flap(turn, turned, Found(1.0, 0.05, "c_l_delta as the file states it; se 5 %"))
     ratio = shape.slope.value / (2.0 * np.pi)
     loss = friction_loss(shape.slope.value)
     # The surface's slope holds the section's own loss already.

@@ -30,6 +30,9 @@ def drag(
 
     CD_0 is the drag at alpha = 0. The lift of least drag is taken to be zero.
     """
+    stated = stated_area(geometry)
+    if stated > 0.0:
+        items = (*items, DragItem("parts by the file's drag area", 1.0, stated))
     minimum, parts = profile_drag(
         wetted_parts(plan, geometry),
         plan.S,
@@ -48,7 +51,10 @@ def drag(
 
 
 def wetted_parts(plan: Layout, geometry: Geometry) -> list[WettedPart]:
-    """Surfaces and bodies by their skin, outside one another."""
+    """Surfaces and bodies by their skin, outside one another.
+
+    Bodies are left out where the file states the drag area of all that is no lifting surface.
+    """
     out = []
     for surface in geometry.surfaces:
         shapes = [
@@ -65,11 +71,16 @@ def wetted_parts(plan: Layout, geometry: Geometry) -> list[WettedPart]:
                 surface_form(shape.thickness) * lift_factor, JOINT[surface.role],
             )
         )  # fmt: skip
-    if plan.body is not None:
+    if plan.body is not None and stated_area(geometry) == 0.0:
         body = plan.body
         form = body_form(body.length, body.diameter)
         out.append(WettedPart(body.name, body.wetted_area, body.length, form, 1.0, laminar=0.0))
     return out
+
+
+def stated_area(geometry: Geometry) -> float:
+    """Drag area, m2, of all that is no lifting surface, as the file states it, else 0."""
+    return float(getattr(geometry, "drag_area", 0.0))
 
 
 def induced_factor(plan: Layout) -> Found:
