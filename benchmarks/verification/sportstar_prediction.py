@@ -7,15 +7,12 @@ flight shows Cm_q + Cm_alphadot, and its drag is a straight line over the angle 
 
 from __future__ import annotations
 
-from dataclasses import replace
-from math import radians
 from pathlib import Path
 
 import numpy as np
 
 from alula.aircraft import Aircraft, load_aircraft
 from alula.model import Reference, load_model
-from alula.predict.axes import along
 from alula.predict.combine import as_flown, combine
 from alula.predict.derivatives import Derivatives
 from alula.predict.flow import Flow
@@ -34,20 +31,20 @@ GEAR = (DragItem("wheels", 0.30, 0.125), DragItem("legs", 0.50, 0.060))
 def predictions(aircraft: Aircraft) -> list[Derivatives]:
     """Handbook formulas, and lattice with bodies where the lattice is built."""
     handbook = semi_empirical(aircraft, FLOW, items=GEAR)
-    lattice = lattice_at(aircraft, radians(float(handbook.conditions["alpha_deg"])))
+    lattice = lattice_of(aircraft)
     return [handbook] if lattice is None else [lattice_and_bodies(aircraft, lattice), handbook]
 
 
-def lattice_at(aircraft: Aircraft, alpha: float) -> Derivatives | None:
-    """The vortex lattice at an angle of attack, in stability axes."""
+def lattice_of(aircraft: Aircraft) -> Derivatives | None:
+    """The vortex lattice at zero angle of attack, where its axes do not matter."""
     try:
         from alula.predict.vortex_lattice import vortex_lattice
     except ImportError:
         return None
     reference = Reference(aircraft.S, aircraft.b, aircraft.c)
     assert aircraft.geometry is not None
-    found = vortex_lattice(aircraft.geometry, reference, aircraft.reference_point, alpha=alpha)
-    return along(replace(found.as_derivatives(), axes="model"), "stability")
+    found = vortex_lattice(aircraft.geometry, reference, aircraft.reference_point)
+    return found.as_derivatives()
 
 
 def straight_drag(prediction: Derivatives, zero: float, slope: float) -> tuple[float, float]:

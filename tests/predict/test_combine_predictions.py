@@ -16,7 +16,9 @@ from alula.predict.axes import along, turn
 from alula.predict.combine import FLOOR, added, as_flown, combine
 from alula.predict.derivatives import Derivatives, Estimate
 from alula.predict.flow import Flow
+from alula.predict.lattice_and_bodies import lattice_and_bodies
 from alula.predict.semi_empirical import semi_empirical
+from alula.predict.slender_body import slender_bodies
 from alula.predict.to_model import priors, to_model
 from alula.simulate import airframe_of, linearize, modes_of, trim_level
 from alula.simulate.airframe import core_model
@@ -191,3 +193,23 @@ def test_priors_are_what_estimators_take() -> None:
 def test_model_without_lift_is_refused() -> None:
     with pytest.raises(BadInput, match="CL_alpha"):
         to_model(given("a", Cm_q=(-9.0, 1.0)), Reference(1.0, 1.0, 1.0), np.zeros(3), name="x")
+
+
+def test_a_value_near_zero_is_not_known_exactly() -> None:
+    """A tenth of almost nothing is no error bar: the derivative's ordinary size counts."""
+    low = given("a", Cl_beta=(-0.001, 1e-4))
+    assert combine([low]).values["Cl_beta"].se == pytest.approx(FLOOR * 0.1)
+
+
+def test_lattice_with_bodies_leaves_out_what_it_does_not_know() -> None:
+    aircraft = load_aircraft(SPORTSTAR)
+    lattice = given("vortex_lattice", CL_alpha=(5.0, 0.5), Cm_alpha=(-1.0, 0.1), CD_alpha=(0.1, 0.1),
+                    Cl_r=(0.01, 0.0), Cl_p=(-0.5, 0.05))  # fmt: skip
+    whole = lattice_and_bodies(aircraft, lattice).values
+    assert not {"CD_alpha", "Cl_r", "Cm_alphadot", "Cn_betadot"} & whole.keys()
+    assert whole["Cl_p"].value == -0.5
+    # The body overturns: Multhopp's moment, between none and that of slender bodies in free air.
+    alone = slender_bodies(aircraft).values["Cm_alpha"].value
+    assert 0.0 < whole["Cm_alpha"].value + 1.0 < 2.0 * alone
+    loaded = replace(lattice, conditions={"alpha_deg": "4"})
+    assert "Cl_r" in lattice_and_bodies(aircraft, loaded).values
