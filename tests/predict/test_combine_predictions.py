@@ -203,8 +203,8 @@ def test_a_value_near_zero_is_not_known_exactly() -> None:
 
 def test_lattice_with_bodies_leaves_out_what_it_does_not_know() -> None:
     aircraft = load_aircraft(SPORTSTAR)
-    lattice = given("vortex_lattice", CL_alpha=(5.0, 0.5), Cm_alpha=(-1.0, 0.1), CD_alpha=(0.1, 0.1),
-                    Cl_r=(0.01, 0.0), Cl_p=(-0.5, 0.05))  # fmt: skip
+    known = {"CL_alpha": (5.0, 0.5), "Cm_alpha": (-1.0, 0.1), "Cl_p": (-0.5, 0.05)}
+    lattice = given("vortex_lattice", CD_alpha=(0.1, 0.1), Cl_r=(0.01, 0.0), **known)
     whole = lattice_and_bodies(aircraft, lattice).values
     assert not {"CD_alpha", "Cl_r", "Cm_alphadot", "Cn_betadot"} & whole.keys()
     assert whole["Cl_p"].value == -0.5

@@ -3,8 +3,9 @@
 The rule: the mean weighted by inverse variances. Its variance: the methods' own, averaged with the
 same weights, plus their spread about the mean. The own part does not fall with the number of
 methods, since all stand on the same geometry and the same linear theory. Before that each
-method's error is raised to at least `FLOOR` of its value: a mesh error of zero is no knowledge of
-the flight.
+method's error is raised to at least `FLOOR` of its value, or of the size that the derivative has on
+ordinary airplanes: a mesh error of zero is no knowledge of the flight, nor is a tenth of a value
+that happens to be small.
 """
 
 from __future__ import annotations
@@ -19,6 +20,16 @@ from alula.predict.derivatives import Derivatives, Estimate
 # Root mean square of (predicted/flown - 1) over C_L_alpha and C_L_de by Tornado, AVL and Datcom,
 # Dittrich 2016, Table 4.4: the best that such methods did against flight.
 FLOOR = 0.05
+# Sizes on conventional light airplanes (compare Nelson, Flight Stability and Automatic Control,
+# 1998, app. B), for the floor only.
+SIZE = {
+    "CL_0": 0.3, "CL_alpha": 5.0, "CL_q": 8.0, "CL_alphadot": 2.0, "CL_de": 0.4, "CL_df": 0.8,
+    "Cm_0": 0.1, "Cm_alpha": 1.0, "Cm_q": 12.0, "Cm_alphadot": 5.0, "Cm_de": 1.2, "Cm_df": 0.2,
+    "CD_0": 0.03, "CD_alpha": 0.3, "CD_alpha2": 1.5,
+    "CY_beta": 0.4, "CY_p": 0.1, "CY_r": 0.2, "CY_da": 0.05, "CY_dr": 0.2,
+    "Cl_beta": 0.1, "Cl_p": 0.5, "Cl_r": 0.1, "Cl_da": 0.2, "Cl_dr": 0.02,
+    "Cn_beta": 0.08, "Cn_p": 0.05, "Cn_r": 0.1, "Cn_da": 0.02, "Cn_dr": 0.08,
+}  # fmt: skip
 
 # Derivatives that flight does not tell apart from others, by what they are compared with.
 PAIRS = {
@@ -102,7 +113,8 @@ def as_flown(prediction: Derivatives) -> dict[str, Estimate]:
 
 def _one(name: str, predictions: Sequence[Derivatives], preferred: str | None) -> Estimate:
     given = [(d.method, d.values[name]) for d in predictions if name in d.values]
-    se = [max(e.se, FLOOR * abs(e.value)) for _, e in given]
+    least = FLOOR * SIZE.get(name, 0.0)
+    se = [max(e.se, FLOOR * abs(e.value), least) for _, e in given]
     exact = min(se) <= 0.0  # a value that is zero by symmetry
     weights = [1.0 if exact else s**-2 for s in se]
     total = sum(weights)
