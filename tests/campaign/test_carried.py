@@ -6,11 +6,13 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from alula.campaign.check import check_project
 from alula.campaign.measured import measured_maneuvers
 from alula.identify.carried import carried
 from alula.identify.output_error import identify_output_error
+from alula.identify.output_error_fit import Covariance
 from alula.identify.output_error_problem import STATE_SETS, Setting
 from alula.reconstruct import reconstruct
 from cli.command import demo_files, small_project
@@ -18,7 +20,10 @@ from cli.command import demo_files, small_project
 __all__ = ["demo_files"]
 
 
-def test_the_step_is_what_other_readings_give(demo_files: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize("covariance", ["diagonal", "full"])
+def test_the_step_is_what_other_readings_give(
+    demo_files: Path, tmp_path: Path, covariance: Covariance
+) -> None:
     project = small_project(demo_files, tmp_path / "project")
     checked = check_project(str(project.path))
     path = reconstruct(
@@ -30,7 +35,11 @@ def test_the_step_is_what_other_readings_give(demo_files: Path, tmp_path: Path) 
 
     def identified(m):
         return identify_output_error(
-            [m], models, states=setting.states, outputs=list(setting.outputs)
+            [m],
+            models,
+            states=setting.states,
+            outputs=list(setting.outputs),
+            covariance=covariance,
         )
 
     found = identified(maneuver)
@@ -38,7 +47,7 @@ def test_the_step_is_what_other_readings_give(demo_files: Path, tmp_path: Path) 
     strongest = max(shifts, key=lambda s: np.abs(s[id].get("alpha", np.zeros(1))).max())
     moved = {n: x + strongest[id].get(n, 0.0) for n, x in maneuver.outputs.items()}
     again = identified(replace(maneuver, outputs=moved))
-    wider = carried(found, [maneuver], models, [strongest], setting)
+    wider = carried(found, [maneuver], models, [strongest], setting, covariance=covariance)
     assert wider.uncertainty.endswith("reconstruction")
     told = 0
     for p, q, w in zip(found.parameters, again.parameters, wider.parameters, strict=True):

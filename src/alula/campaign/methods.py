@@ -159,6 +159,10 @@ def _by_outputs(
         _one_of("algorithm", options["algorithm"], ("gauss_newton", "levenberg_marquardt"))
     options |= {k: f(options[k]) for k, f in (("tied", factors), ("priors", priors_of))
                 if k in options}  # fmt: skip
+    if options.get("covariance", "diagonal") != "diagonal":
+        _one_of("covariance", options["covariance"], ("diagonal", "full"))
+        if "noise" in options:
+            raise _bad("covariance", "diagonal, as noise is given", "'full'")
     if "bounds" in options:
         options["bounds"] = {k: tuple(v) for k, v in options["bounds"].items()}
     _one_of("initial", options.get("initial", "estimate"), ("estimate", "measured"))
@@ -184,7 +188,7 @@ def _by_outputs(
         )
         if identify is identify_output_error:
             setting = Setting(flown, tuple(outputs), **{k: own[k] for k in _SETTING & own.keys()})
-            rest = {k: own[k] for k in ("noise", "priors", "scales") if k in own}
+            rest = {k: own[k] for k in ("noise", "priors", "scales", "covariance") if k in own}
             found = carried(found, serving, models, shifts, setting, **rest)
         results.append(replace(found, formulas=found.formulas or models))
     result = merged(results)
@@ -325,6 +329,7 @@ IDENTIFIERS: Mapping[str, Method] = {
             "common_constant": "flag",
             "stabilize": "numbers",
             "noise": "numbers",
+            "covariance": "text",
             "algorithm": "text",
             "substeps": "number",
             "scales": "numbers",
