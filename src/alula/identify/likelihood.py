@@ -25,6 +25,7 @@ from alula.identify.optimizer import Minimum
 from alula.identify.regression import Block, Regression
 from alula.identify.result import Fit, Identification, Parameter, Series
 from alula.identify.sandwich import sandwich
+from alula.identify.stillness import distrusted_if_still
 from alula.identify.verdict import assess
 
 
@@ -162,6 +163,9 @@ def assembled(
         replace(p, coefficient=belongs.get(p.name.split("[")[0], p.name.split("(")[0]))
         for p in parameters
     )
+    if not ordinates:  # amplitudes over frequency are not about a mean
+        parameters, unmoved = distrusted_if_still(parameters, fitted)
+        said += unmoved
     covariance = fit.coloured.covariance.copy()
     lost = [i for i, p in enumerate(parameters) if p.verdict == "not_identifiable"]
     covariance[lost, :] = np.nan
