@@ -21,7 +21,7 @@ from alula.base.messages import note, refuse
 from alula.identify.fourier import fourier_integral, harmonics
 from alula.identify.likelihood import Fitted, Prior, Whitened, assembled
 from alula.identify.linear_model import LinearModel
-from alula.identify.linear_output_error import learned
+from alula.identify.linear_output_error import learned, summed
 from alula.identify.linear_record import LinearRecord, Unknowns
 from alula.identify.linear_start import first_values
 from alula.identify.named_search import prior_blocks, search_named
@@ -144,12 +144,7 @@ class FrequencyError:
         cost = 0.5 * count * float(np.sum(np.log(r)))
         if not derivatives:
             return Point(cost)
-        gradient, information = np.zeros(len(p)), np.zeros((len(p), len(p)))
-        for v, S in parts:
-            weighted = S / r[:, None]
-            gradient -= np.einsum("nik,ni->k", weighted, v)
-            information += np.tensordot(weighted, S, axes=([0, 1], [0, 1]))
-        return Point(cost, gradient, information)
+        return summed(cost, parts, r)
 
     def blocks(self, p: Array) -> list[Whitened]:
         """One block per output and maneuver, real and imaginary parts in turn."""

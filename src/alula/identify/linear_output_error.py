@@ -99,13 +99,7 @@ class OutputError:
         cost = 0.5 * float(self.count @ np.log(r))
         if not derivatives:
             return Point(cost)
-        k = len(p)
-        gradient, information = np.zeros(k), np.zeros((k, k))
-        for v, S in runs:
-            weighted = S / r[:, None]
-            gradient -= np.einsum("nik,ni->k", weighted, v)
-            information += np.tensordot(weighted, S, axes=([0, 1], [0, 1]))
-        return Point(cost, gradient, information)
+        return summed(cost, runs, r)
 
     def blocks(self, p: Array) -> list[Whitened]:
         """One block per output and maneuver, missing samples left out."""
@@ -203,6 +197,17 @@ def search(
     """The search from regression's first values, `start` in their place where given."""
     first = unknowns.vector(start or {}, first_values(model, records, unknowns))
     return search_named(likelihood, first, unknowns.vector, bounds, priors, algorithm)
+
+
+def summed(cost: float, runs: Sequence[tuple[Array, Array]], r: Array) -> Point:
+    """The cost with its slopes. runs: residuals (n, m) and sensitivities (n, m, k). r: (m,)."""
+    k = runs[0][1].shape[-1]
+    gradient, information = np.zeros(k), np.zeros((k, k))
+    for v, S in runs:
+        weighted = S / r[:, None]
+        gradient -= np.einsum("nik,ni->k", weighted, v)
+        information += np.tensordot(weighted, S, axes=([0, 1], [0, 1]))
+    return Point(cost, gradient, information)
 
 
 def learned(records: Sequence[LinearRecord]) -> list[LinearRecord]:

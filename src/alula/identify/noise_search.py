@@ -28,15 +28,18 @@ LARGEST = 1.0  # change of a noise's logarithm in one iteration: far from the ma
 
 
 class NoisyProblem(ABC):
-    """Names, first values and bounds of a filter error; `run` filters.
+    """Names, first values and bounds of a filter error; `filtered` is the filter.
 
-    names: of the search's vector. first: (k,). logarithmic: the noises in it. belongs: by name, the
-    row each parameter stands in.
+    A bank of filters, one per parameter vector, over several maneuvers. names: of the search's
+    vector. first: (k,). logarithmic: the noises in it. belongs: by name, the row each parameter
+    stands in.
     """
 
     def __init__(
         self,
         unknowns: Unknowns,
+        records: Sequence[LinearRecord],
+        states: Sequence[str],
         noisy: Sequence[str],
         outputs: Sequence[str],
         theta: Array,
@@ -44,7 +47,8 @@ class NoisyProblem(ABC):
         fixed: Mapping[str, float],
         belongs: Mapping[str, str],
     ) -> None:
-        self.unknowns = unknowns
+        self.unknowns, self.records = unknowns, records
+        self.states, self.driven = len(states), [states.index(s) for s in noisy]
         self.free = len(unknowns.free)
         self.count = len(noisy)
         noises = [f"F_{s}" for s in noisy] + [f"sigma_{y}" for y in outputs]
@@ -56,8 +60,26 @@ class NoisyProblem(ABC):
         self.belongs = {**belongs, **{n: n.split("_", 1)[1] for n in noises}}
 
     @abstractmethod
-    def run(self, members: Array) -> Sequence[Innovations] | None:
-        """Innovations of every maneuver for parameter vectors (m, k)."""
+    def filtered(
+        self, maneuver: int, values: Array, x0: Array, intensity: Array, R: Array
+    ) -> Innovations | None:
+        """Innovations of one maneuver for m values, initial states, intensities and variances.
+
+        None where the filter has no result.
+        """
+
+    def run(self, members: Array) -> list[Innovations] | None:
+        """Innovations of every maneuver for m parameter vectors (m, k)."""
+        intensity = np.zeros((len(members), self.states))
+        intensity[:, self.driven], R = self.noises(members)
+        out = []
+        for i in range(len(self.records)):
+            values, x0 = self.unknowns.of(i, members[:, : self.free])
+            found = self.filtered(i, values, x0, intensity, R)
+            if found is None:
+                return None
+            out.append(found)
+        return out
 
     def vector(self, by_name: Mapping[str, float], default: Array) -> Array:
         """(k,) values by name, none of them noises."""
