@@ -208,6 +208,8 @@ def test_lattice_with_bodies_leaves_out_what_it_does_not_know() -> None:
     whole = lattice_and_bodies(aircraft, lattice).values
     assert not {"CD_alpha", "Cl_r", "Cm_alphadot", "Cn_betadot"} & whole.keys()
     assert whole["Cl_p"].value == -0.5
+    # A closed body's pitch damping and its lag cancel: nothing is left to be mistaken for damping.
+    assert whole["Cm_q"].value == pytest.approx(0.0, abs=1e-6)
     # The body overturns: Multhopp's moment, between none and that of slender bodies in free air.
     alone = slender_bodies(aircraft).values["Cm_alpha"].value
     assert 0.0 < whole["Cm_alpha"].value + 1.0 < 2.0 * alone

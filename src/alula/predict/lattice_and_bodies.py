@@ -7,7 +7,7 @@ from dataclasses import replace
 from alula.aircraft.aircraft import Aircraft
 from alula.predict.body_carry_over import bodies_at_wing
 from alula.predict.combine import PAIRS, added
-from alula.predict.derivatives import Derivatives
+from alula.predict.derivatives import Derivatives, Estimate
 from alula.predict.slender_body import slender_bodies
 
 METHOD = "lattice and bodies"
@@ -31,7 +31,7 @@ def lattice_and_bodies(aircraft: Aircraft, lattice: Derivatives) -> Derivatives:
     """
     parts = [lattice]
     if aircraft.geometry is not None and aircraft.geometry.bodies:
-        parts.append(replace(slender_bodies(aircraft), axes=lattice.axes))
+        parts.append(replace(_lumped(slender_bodies(aircraft)), axes=lattice.axes))
         if aircraft.geometry.surface("wing") is not None:
             joined = bodies_at_wing(aircraft, lattice.values["CL_alpha"].value)
             parts.append(replace(joined, axes=lattice.axes))
@@ -41,3 +41,17 @@ def lattice_and_bodies(aircraft: Aircraft, lattice: Derivatives) -> Derivatives:
         left_out |= set(_OF_LIFT)
     kept = {name: e for name, e in whole.values.items() if name not in left_out}
     return replace(whole, values=kept)
+
+
+def _lumped(bodies: Derivatives) -> Derivatives:
+    """The bodies' lags in their rates' derivatives: of a closed body the two cancel."""
+    values = {name: e for name, e in bodies.values.items() if name not in _LAGS}
+    for name, (partner, sign) in PAIRS.items():
+        lag = bodies.values.get(partner)
+        if lag is not None:
+            own = values.get(name, Estimate(0.0, 0.0, lag.source))
+            # One cause: their errors cancel as they do.
+            values[name] = Estimate(
+                own.value + sign * lag.value, abs(own.se - lag.se), f"{own.source}, with {partner}"
+            )
+    return replace(bodies, values=values)
