@@ -67,3 +67,35 @@ def test_nothing_to_carry_changes_nothing(demo_files: Path, tmp_path: Path) -> N
         checked.flights, checked.maneuvers, checked.aircraft, checked.project.reconstruct
     )
     assert measured_maneuvers(checked, path)[2] == []
+
+
+def test_a_second_sensor_s_own_bias_is_carried(demo_files: Path, tmp_path: Path) -> None:
+    """Where another channel of the quantity is read, its constants count and no others'."""
+    checked = check_project(str(small_project(demo_files, tmp_path / "project").path))
+    path = reconstruct(
+        checked.flights, checked.maneuvers, checked.aircraft, checked.project.reconstruct
+    )
+    first = measured_maneuvers(checked, path)[2]
+
+    def renamed(name: str) -> str:
+        return {"b_alpha": "b_alpha_2", "k_alpha": "k_alpha_2"}.get(name, name)
+
+    segments = tuple(
+        replace(
+            s,
+            sensors=tuple(
+                replace(x, name="alpha_2") if x.name == "alpha" else x for x in s.sensors
+            ),
+        )
+        for s in path.segments
+    )
+    constants = tuple(replace(c, name=renamed(c.name)) for c in path.constants)
+    assert constants != path.constants  # the demo's vane has constants to be unsure of
+    second = measured_maneuvers(checked, replace(path, segments=segments, constants=constants))[2]
+    assert len(first) == len(second)
+    for one, two in zip(first, second, strict=True):
+        assert one.keys() == two.keys()
+        for id in one:
+            assert one[id].keys() == two[id].keys()
+            for name in one[id]:
+                np.testing.assert_array_equal(one[id][name], two[id][name])
