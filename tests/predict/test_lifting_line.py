@@ -64,6 +64,14 @@ def test_faster_right_half_rolls_left() -> None:
     assert line.slowed(base, line.eta) == pytest.approx(expected, rel=1e-6)
 
 
+def test_carried_lift() -> None:
+    """Times one it is the lift; times eta squared, of the elliptic load, a quarter of it."""
+    line = elliptic()
+    base = line.load(np.full_like(line.eta, 0.1))
+    assert line.carried(base, np.ones_like(line.eta)) == pytest.approx(line.lift(base), rel=EXACT)
+    assert line.carried(base, line.eta**2) == pytest.approx(0.25 * line.lift(base), rel=EXACT)
+
+
 def test_center_of_elliptic_load() -> None:
     line = elliptic()
     base = line.load(np.ones_like(line.eta))

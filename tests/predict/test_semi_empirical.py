@@ -106,6 +106,23 @@ def test_camber_lifts_and_pitches_down() -> None:
     assert quarter == pytest.approx(-np.pi * 0.04, rel=0.02)
 
 
+def test_washout_trims_a_flying_wing() -> None:
+    """Swept back with its tips nose down, it lifts inboard, ahead: nose up at zero lift."""
+    base = light_airplane(body=False)
+    wing = base.surfaces[0]
+    for twist, sweep in ((-0.08, 2.0), (-0.08, 0.0), (0.0, 2.0)):
+        tip = replace(
+            wing.sections[1], twist=twist, position=wing.sections[1].position - [sweep, 0.0, 0.0]
+        )
+        alone = replace(wing, sections=(wing.sections[0], tip), controls=())
+        v = predicted(replace(base, surfaces=(alone,))).values
+        at_zero_lift = v["Cm_0"].value - v["Cm_alpha"].value / v["CL_alpha"].value * v["CL_0"].value
+        if twist and sweep:
+            assert at_zero_lift > 0.02
+        else:  # the straight wing's quarter chord line is swept by a third of a degree only
+            assert abs(at_zero_lift) < 0.002
+
+
 def test_beside_the_lattices_of_other_codes() -> None:
     """The SportStar-sized case of vortex_lattice.json: within twice the stated standard error.
 

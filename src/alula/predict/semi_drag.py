@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from math import cos, pi
 
 from alula.aircraft.geometry import Geometry
-from alula.predict.handbook import Found, Range, found, scaled, times
+from alula.predict.handbook import Found, Range, found, scaled, squared, times
 from alula.predict.layout import Layout
 from alula.predict.oswald import aircraft_factor, nita_scholz, raymer
 from alula.predict.planform import wetted_area
@@ -44,9 +44,9 @@ def drag(
     induced = induced_factor(plan)
     zero, slope = sums.total("CL_0"), sums.total("CL_alpha")
     sums.add("CD_0", minimum)
-    sums.add("CD_0", times(induced, zero, zero))
+    sums.add("CD_0", times(induced, squared(zero)))
     sums.add("CD_alpha", scaled(times(induced, zero, slope), 2.0))
-    sums.add("CD_alpha2", times(induced, slope, slope))
+    sums.add("CD_alpha2", times(induced, squared(slope)))
     return parts
 
 

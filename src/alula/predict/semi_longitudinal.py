@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from alula.predict.alpha_dot import tail_rates
 from alula.predict.body_carry_over import body_at_wing
 from alula.predict.handbook import Found, Range, exactly, found, plus, scaled, times
-from alula.predict.layout import Layout, lift_at_zero
+from alula.predict.layout import Layout, incidence, lift_at_zero
 from alula.predict.pitch_rate import tail, wing
 from alula.predict.sums import Sums
 
@@ -19,6 +21,7 @@ def longitudinal(plan: Layout, sums: Sums) -> None:
     sums.add("Cm_alpha", plan.wing_lift, -plan.behind)
     sums.add("Cm_0", wing_zero, -plan.behind)
     sums.add("Cm_0", _section_moment(plan))
+    sums.add("Cm_0", _twist_moment(plan))
     rates = wing(plan.wing_lift, shape.slope.value, shape.aspect, shape.sweep_quarter, plan.behind)
     sums.add_all(rates)
     if plan.body is not None:
@@ -45,6 +48,17 @@ def _section_moment(plan: Layout) -> Found:
     total = 2.0 * float((shape.local_moment * shape.local_chord**2).sum()) * step
     value = total / (plan.S * plan.c)
     return Found(value, 0.1 * abs(value) + 0.005, "sections' moment by strips; se 10 % and 0.005")
+
+
+def _twist_moment(plan: Layout) -> Found:
+    """Cm_0 of the lift that twist moves along a swept wing, whose sum is zero."""
+    wing, line = plan.wing, plan.wing.line
+    twisted, plain = line.load(incidence(wing, 0.0)), line.load(np.ones_like(line.eta))
+    share = line.lift(twisted) / line.lift(plain)
+    x = wing.over_span(wing.shape.local_quarter - wing.shape.quarter[0])
+    basic = line.carried(twisted, x) - share * line.carried(plain, x)
+    value = wing.even * basic * plan.share / plan.c
+    return Found(value, 0.25 * abs(value), "twist by the lifting line; se 25 %, unswept loads")
 
 
 def _body(plan: Layout) -> Found:

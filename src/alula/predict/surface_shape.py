@@ -25,7 +25,8 @@ class SurfaceShape:
     connected surface (a fin's own, not the mirrored wing's). station: distance of the mean chord
     from the root along the span, m. quarter: (3,), its quarter point, on the right or upper half.
     root: (3,) of the first section's leading edge. sweep_*: rad. slope: c_l_alpha, incompressible.
-    eta: (k,) over the (half) span, 0 to 1; local_*: (k,) there.
+    eta: (k,) over the (half) span, 0 to 1; local_*: (k,) there; local_quarter: x of the quarter
+    chord, m.
     """
 
     name: str
@@ -50,6 +51,7 @@ class SurfaceShape:
     local_dihedral: Array
     local_zero_lift: Array
     local_moment: Array
+    local_quarter: Array
     controls: tuple[ControlSurface, ...]
     plan: Planform
 
@@ -111,6 +113,9 @@ def surface_shape(surface: LiftingSurface, geometry: Geometry) -> SurfaceShape:
         local_dihedral=dihedral,
         local_zero_lift=np.interp(where, arc, [_zero_lift(a) for a in foils]),
         local_moment=np.interp(where, arc, [_moment(a) for a in foils]),
+        local_quarter=np.interp(
+            where, arc, [x.position[0] - 0.25 * x.chord for x in surface.sections]
+        ),
         controls=surface.controls,
         plan=plan,
     )
