@@ -48,9 +48,12 @@ inline void flight_equations(const MotionState<L, M, P>& x, const std::array<D, 
   const double angles[4] = {value_of(x.alpha), value_of(x.theta), value_of(x.beta),
                             value_of(x.phi)};
   sincos(Angles::from([&angles](int i) { return angles[i]; }), s, c);
-  const L sa = detail::function_of(x.alpha, s[0], c[0]), ca = detail::function_of(x.alpha, c[0], -s[0]);
-  const P st = detail::function_of(x.theta, s[1], c[1]), ct = detail::function_of(x.theta, c[1], -s[1]);
-  const M sb = detail::function_of(x.beta, s[2], c[2]), cb = detail::function_of(x.beta, c[2], -s[2]);
+  const L sa = detail::function_of(x.alpha, s[0], c[0]),
+          ca = detail::function_of(x.alpha, c[0], -s[0]);
+  const P st = detail::function_of(x.theta, s[1], c[1]),
+          ct = detail::function_of(x.theta, c[1], -s[1]);
+  const M sb = detail::function_of(x.beta, s[2], c[2]),
+          cb = detail::function_of(x.beta, c[2], -s[2]);
   const M sf = detail::function_of(x.phi, s[3], c[3]), cf = detail::function_of(x.phi, c[3], -s[3]);
 
   D CX = C[0], CZ = C[2];

@@ -21,8 +21,7 @@ bool flies(const VariationalPlan<axes>& plan, const double* x) {
 
 // A row of `columns` numbers between sample and the next one, w of the way; written to `space`
 // where it has to be made.
-inline const double* between(const double* rows, int columns, int sample, double w,
-                             double* space) {
+inline const double* between(const double* rows, int columns, int sample, double w, double* space) {
   const double* first = rows + static_cast<long>(sample) * columns;
   if (w == 0.0) return first;
   if (w == 1.0) return first + columns;

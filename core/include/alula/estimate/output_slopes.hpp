@@ -7,7 +7,8 @@ namespace alula {
 
 // Of each output: the sums of J J' (upper triangle), of J e and of e^2, J its derivatives by the
 // parameters and e = measured - model; so that weights can be chosen afterwards. Outputs are filled
-// up to `rows_of` them. predicted (n, outputs) and sensitivity (n, outputs, columns): where not null.
+// up to `rows_of` them. predicted (n, outputs) and sensitivity (n, outputs, columns): where not
+// null.
 struct OutputErrorSums {
   double* information = nullptr;  // (columns, columns, rows), zeroed by the caller
   double* gradient = nullptr;     // (columns, rows), zeroed by the caller

@@ -2,8 +2,8 @@
 // What one Runge-Kutta step does to the sensitivities: the derivative of the step itself, exact to
 // rounding. The rates k_s = f(x_s, C_s) at x_s = x + ahead_s k_(s-1) have the slopes A_s by the
 // states and G_s by the coefficients, so that the step's result moves by
-// dx' = by_state dx + sum over stages of by_force_s dC_s. Collected from the last stage to the first,
-// as an adjoint, it costs the same for any number of parameters.
+// dx' = by_state dx + sum over stages of by_force_s dC_s. Collected from the last stage to the
+// first, as an adjoint, it costs the same for any number of parameters.
 #include "alula/estimate/variational.hpp"
 
 namespace alula {
@@ -43,8 +43,7 @@ struct StepSlopes {
 
   // stage: rates with slopes. weight: of each stage's rates in the result. ahead: from the step's
   // beginning to each stage.
-  void collect(const Instant<axes>* stage, const double* weight,
-               const double* ahead) {
+  void collect(const Instant<axes>* stage, const double* weight, const double* ahead) {
     States later[K::kStates];  // the result by the rates of a stage
     for (int i = 0; i < K::kStates; ++i) {
       by_state[i] = States::load(detail::kDirectionRows<K::kStates>.row[i]);

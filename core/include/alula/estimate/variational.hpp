@@ -62,10 +62,9 @@ template <Axes axes, class R, class A>
 inline R seeded_force(const VariationalPlan<axes>& plan, int force, const A* slots,
                       const double* u) {
   A sum(u[kInCoefficients + Kernel<axes>::coefficient[force]]);
-  for (int k = 0; k < plan.count[force]; ++k) {
-    const auto& term = plan.terms[force][k];
-    sum += term.value * slots[term.slot];
-  }
+  const auto* end = plan.terms[force] + plan.count[force];
+  for (const auto* term = plan.terms[force]; term != end; ++term)
+    sum += term->value * slots[term->slot];
   R out(sum);
   seed(out, Kernel<axes>::along_force[force]);
   return out;
@@ -75,8 +74,8 @@ inline R seeded_force(const VariationalPlan<axes>& plan, int force, const A* slo
 
 // u: a row of inputs; x: the kernel's variables, states and others.
 template <Axes axes>
-[[gnu::flatten]] inline void evaluate(const VariationalPlan<axes>& plan, const double* x, const double* u,
-                     Instant<axes>& out) {
+[[gnu::flatten]] inline void evaluate(const VariationalPlan<axes>& plan, const double* x,
+                                      const double* u, Instant<axes>& out) {
   using K = Kernel<axes>;
   using D = typename Instant<axes>::D;
   using A = Dual<double, K::kAir>;
@@ -96,8 +95,8 @@ template <Axes axes>
     s = {air(0),      air(1),      air(2),        u[kMotionBeta],
          u[kMotionP], u[kMotionR], u[kMotionPhi], seeded(3, D(0.0))};
   else if constexpr (axes == Axes::lateral)
-    s = {u[kMotionV], u[kMotionAlpha], u[kMotionQ], air(0), air(1), air(2), air(3),
-         u[kMotionTheta]};
+    s = {u[kMotionV], u[kMotionAlpha], u[kMotionQ], air(0),
+         air(1),      air(2),          air(3),      u[kMotionTheta]};
   else
     s = {air(0), air(1), air(4), air(2), air(3), air(5), air(6), seeded(7, D(0.0))};
 
@@ -114,17 +113,15 @@ template <Axes axes>
     return CL;
   });
   std::array<D, kCoefficients> C;
-  for (int c = 0; c < kCoefficients; ++c) {
-    const int force = force_of<axes>(c);
-    C[static_cast<unsigned>(c)] =
-        force < 0                ? D(u[kInCoefficients + c])
-        : c == kLift && has_lift ? D(CL)
-                                 : detail::seeded_force<axes, D>(plan, force, slots, u);
-  }
+  for (unsigned c = 0; c < kCoefficients; ++c) C[c] = D(u[kInCoefficients + c]);
+  for (int c = 0; c < K::kForces; ++c)
+    C[static_cast<unsigned>(K::coefficient[c])] =
+        c == lift && has_lift ? D(CL) : detail::seeded_force<axes, D>(plan, c, slots, u);
   flight_equations<axes>(s, C, u, m, out.y);
 
-  for (int k = 0; k < plan.effects; ++k)
-    out.effect[k] = plan.effect[k].weight * slots[plan.effect[k].slot].value;
+  double* effect = out.effect;
+  for (const auto* k = plan.effect; k != plan.effect + plan.effects; ++k)
+    *effect++ = k->weight * slots[k->slot].value;
 }
 
 // What is no state does not move; states are pulled to z, the measured outputs.

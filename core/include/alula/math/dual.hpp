@@ -1,7 +1,7 @@
 #pragma once
 // Forward-mode derivatives: a value with its slopes along N directions, exact to rounding. Duals of
-// fewer directions mix with those of more: their directions are the first ones, and along the others
-// they do not change.
+// fewer directions mix with those of more: their directions are the first ones, and along the
+// others they do not change.
 #include <alula/math/lanes.hpp>
 #include <cmath>
 #include <type_traits>
