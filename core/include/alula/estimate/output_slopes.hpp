@@ -18,19 +18,21 @@ struct OutputErrorSums {
   double* sensitivity = nullptr;
 };
 
-constexpr int rows_of(int outputs) { return (outputs + 3) / 4 * 4; }
+constexpr int rows_of(int outputs) { return (outputs + kLanes - 1) / kLanes * kLanes; }
 
 template <Axes axes>
 class OutputSlopes {
  public:
   explicit OutputSlopes(const VariationalPlan<axes>& plan) : plan_(plan) {
     const MeasuredManeuver& m = *plan.m;
-    for (int o = 0; o < m.outputs; ++o)
+    for (int o = 0; o < m.outputs; ++o) {
+      if (m.output[o] >= kMotionVariables) accelerations_[o / kLanes] = true;
       for (int i = 0; i < K::kStates; ++i)
         if (m.output[o] == K::state[i] && plan.is_state[i]) {
           state_[o] = i;
           along_[K::along_state[i]][o] = 1.0;
         }
+    }
   }
 
   // Takes up one sample. S: sensitivities, a column of states for each parameter.
@@ -73,7 +75,7 @@ class OutputSlopes {
 
  private:
   using K = Kernel<axes>;
-  using V = Lanes<double, 4>;
+  using V = Lanes<double, kLanes>;
   static constexpr int kRows = rows_of(kMeasuredOutputs), kSamples = 4;
 
   // Without bias. The slopes of accelerations along the kernel's directions are noted.
@@ -92,18 +94,19 @@ class OutputSlopes {
 
   void slopes(const double* S, const Instant<axes>& here, double* J) const {
     const MeasuredManeuver& m = *plan_.m;
-    for (int row = 0; row < m.outputs; row += 4) {
+    for (int row = 0; row < m.outputs; row += kLanes) {
       for (int j = 0; j < m.columns; ++j) {
         V sum(0.0);
         for (int i = 0; i < K::kStates; ++i)
           sum += V(S[j * K::kStates + i]) * V::load(along_[K::along_state[i]] + row);
         sum.store(J + j * kRows + row);
       }
+      if (!accelerations_[row / kLanes]) continue;
       for (int k = 0; k < plan_.effects; ++k) {
         const auto& effect = plan_.effect[k];
         double* own = J + effect.column * kRows + row;
         const V along = V::load(along_[K::along_force[effect.force]] + row);
-        (V::load(own) + V(here.effect[k]) * along).store(own);
+        (V::load(own) + V(effect.weight * here.regressor[effect.regressor]) * along).store(own);
       }
     }
     for (int o = 0; o < m.outputs; ++o)
@@ -112,7 +115,7 @@ class OutputSlopes {
 
   void add(OutputErrorSums& sums) {
     const int columns = plan_.m->columns, rows = rows_of(plan_.m->outputs);
-    for (int row = 0; row < rows; row += 4) {
+    for (int row = 0; row < rows; row += kLanes) {
       for (int i = 0; i < columns; ++i) {
         V own[kSamples], slope = V::load(sums.gradient + i * rows + row);
         for (int n = 0; n < kSamples; ++n) {
@@ -133,6 +136,7 @@ class OutputSlopes {
 
   const VariationalPlan<axes>& plan_;
   int state_[kMeasuredOutputs] = {-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
+  bool accelerations_[kRows / kLanes] = {};  // among the outputs of a register
   alignas(32) double along_[K::kDirections][kRows] = {};
   // Samples wait until there are a few, so that sums stay in registers meanwhile.
   int waiting_ = 0;

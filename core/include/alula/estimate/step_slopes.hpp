@@ -11,9 +11,9 @@ namespace alula {
 // A number for each state, filled up to whole registers.
 template <Axes axes>
 struct StateColumn {
-  using V = Lanes<double, 4>;
-  static constexpr int kSize = Kernel<axes>::kStates, kBlocks = kSize / 4;
-  static_assert(kSize % 4 == 0);
+  using V = Lanes<double, kLanes>;
+  static constexpr int kSize = Kernel<axes>::kStates, kBlocks = kSize / kLanes;
+  static_assert(kSize % kLanes == 0);
   V block[kBlocks];
 
   static StateColumn zero() {
@@ -23,11 +23,11 @@ struct StateColumn {
   }
   static StateColumn load(const double* p) {
     StateColumn r;
-    for (int i = 0; i < kBlocks; ++i) r.block[i] = V::load(p + 4 * i);
+    for (int i = 0; i < kBlocks; ++i) r.block[i] = V::load(p + kLanes * i);
     return r;
   }
   void store(double* p) const {
-    for (int i = 0; i < kBlocks; ++i) block[i].store(p + 4 * i);
+    for (int i = 0; i < kBlocks; ++i) block[i].store(p + kLanes * i);
   }
   void add(double factor, const StateColumn& b) {
     const V f(factor);
@@ -83,8 +83,10 @@ struct StepSlopes {
     for (int k = 0; k < plan.effects; ++k) {
       const auto& effect = plan.effect[k];
       double* own = S + effect.column * K::kStates;
-      States sum = States::load(own);
-      for (int s = 0; s < 4; ++s) sum.add(stage[s].effect[k], by_force[s][effect.force]);
+      States change = States::zero(), sum = States::load(own);
+      for (int s = 0; s < 4; ++s)
+        change.add(stage[s].regressor[effect.regressor], by_force[s][effect.force]);
+      sum.add(effect.weight, change);
       sum.store(own);
     }
   }

@@ -1,19 +1,20 @@
 #pragma once
-// The motion and its sensitivities to any number of parameters: f(x, C, u) is differentiated once
-// by dual numbers over states and coefficients; dC/dp is the regressor itself; S' = A S + B C_p.
-// Jategaonkar, Flight Vehicle System Identification, 2nd ed. 2015, Sec. 4.12 (sensitivities);
-// Klein and Morelli, Aircraft System Identification, 2nd ed. 2016, Eq. (6.30) to (6.33).
+// The motion at one instant with its derivatives: f(x, C, u) is differentiated by dual numbers over
+// states and coefficients, and dC/dp is the regressor itself, so that the sensitivities to any
+// number of parameters follow from S' = A S + B C_p (step_slopes.hpp). Jategaonkar, Flight Vehicle
+// System Identification, 2nd ed. 2015, Sec. 4.12 (sensitivities); Klein and Morelli, Aircraft
+// System Identification, 2nd ed. 2016, Eq. (6.30) to (6.33).
 #include "alula/estimate/variational_plan.hpp"
 
 namespace alula {
 
 // Everything at one instant: rates and specific forces with their slopes along the kernel's
-// directions, and each effect's dC/dp at fixed state.
+// directions, and the regressors.
 template <Axes axes>
 struct Instant {
   using D = Dual<double, Kernel<axes>::kDirections>;
   MotionRates<D> y;
-  double effect[kMaxTerms];
+  double regressor[kMaxTerms];
 };
 
 namespace detail {
@@ -119,9 +120,7 @@ template <Axes axes>
         c == lift && has_lift ? D(CL) : detail::seeded_force<axes, D>(plan, c, slots, u);
   flight_equations<axes>(s, C, u, m, out.y);
 
-  double* effect = out.effect;
-  for (const auto* k = plan.effect; k != plan.effect + plan.effects; ++k)
-    *effect++ = k->weight * slots[k->slot].value;
+  for (int k = 0; k < plan.regressors; ++k) out.regressor[k] = slots[plan.regressor[k]].value;
 }
 
 // What is no state does not move; states are pulled to z, the measured outputs.
@@ -129,6 +128,7 @@ template <Axes axes>
 inline void correct(const VariationalPlan<axes>& plan, const double* x, const double* z,
                     Instant<axes>& here) {
   using K = Kernel<axes>;
+  if (!plan.corrected) return;
   for (int i = 0; i < K::kStates; ++i) {
     auto& rate = here.y.rate[K::state[i]];
     if (!plan.is_state[i]) rate = 0.0;

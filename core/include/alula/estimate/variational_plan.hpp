@@ -44,11 +44,13 @@ struct VariationalPlan {
     int slot;
     double value;
   } terms[Kernel<axes>::kForces][kMaxTerms];
-  int effects;  // of parameters on coefficients
+  int regressors, regressor[kMaxTerms];  // slots whose terms are parameters
+  int effects;                           // of parameters on coefficients
   struct Effect {
-    int force, slot, column;
+    int force, regressor, column;
     double weight;
   } effect[kMaxTerms];
+  bool corrected;  // some states are none here, or are pulled
   bool is_state[Kernel<axes>::kStates];
   double pull[Kernel<axes>::kStates];
   int pull_output[Kernel<axes>::kStates];  // place among the outputs, -1: none
@@ -73,8 +75,11 @@ VariationalPlan<axes> variational_plan(const MeasuredManeuver& m, const double* 
     const int force = force_of<axes>(term.coefficient);
     if (force < 0) continue;
     plan.terms[force][plan.count[force]++] = {term.slot, values[k]};
-    if (m.term_column[k] >= 0)
-      plan.effect[plan.effects++] = {force, term.slot, m.term_column[k], m.term_weight[k]};
+    if (m.term_column[k] < 0) continue;
+    int regressor = 0;
+    while (regressor < plan.regressors && plan.regressor[regressor] != term.slot) ++regressor;
+    if (regressor == plan.regressors) plan.regressor[plan.regressors++] = term.slot;
+    plan.effect[plan.effects++] = {force, regressor, m.term_column[k], m.term_weight[k]};
   }
   for (int i = 0; i < table.step_count; ++i) {
     const Step& step = table.steps[static_cast<unsigned>(i)];
@@ -88,6 +93,7 @@ VariationalPlan<axes> variational_plan(const MeasuredManeuver& m, const double* 
     for (int o = 0; o < m.outputs; ++o)
       if (m.output[o] == variable && m.pull[variable] > 0.0) plan.pull_output[i] = o;
     plan.pull[i] = plan.pull_output[i] < 0 ? 0.0 : m.pull[variable];
+    plan.corrected = plan.corrected || !plan.is_state[i] || plan.pull[i] > 0.0;
   }
   return plan;
 }
