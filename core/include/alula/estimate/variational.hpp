@@ -75,8 +75,8 @@ inline R seeded_force(const VariationalPlan<axes>& plan, int force, const A* slo
 
 // u: a row of inputs; x: the kernel's variables, states and others.
 template <Axes axes>
-[[gnu::flatten]] inline void evaluate(const VariationalPlan<axes>& plan, const double* x,
-                                      const double* u, Instant<axes>& out) {
+inline void evaluate(const VariationalPlan<axes>& plan, const double* x, const double* u,
+                     Instant<axes>& out) {
   using K = Kernel<axes>;
   using D = typename Instant<axes>::D;
   using A = Dual<double, K::kAir>;
