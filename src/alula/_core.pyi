@@ -308,8 +308,8 @@ class ManeuverFit:
 
     def sums(self, values: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], initial: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], bias: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> tuple[int, NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.int64]]:
         """
-        Samples flown (fewer than all: diverged), and by output: information (k, stride),
-        gradient (stride), squared residuals, samples.
+        Samples flown (fewer than all: diverged), and by output: information (k, k),
+        gradient (k,), squared residuals, samples.
         """
 
     def flight(self, values: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], initial: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], bias: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], sensitivity: bool = True) -> tuple[int, NDArray[numpy.float64], NDArray[numpy.float64]]:

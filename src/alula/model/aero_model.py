@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -62,7 +63,7 @@ class AeroModel:
     tables: Mapping[str, LookupTable] = field(default_factory=dict)
     stall: Stall | None = None
 
-    @property
+    @cached_property
     def names(self) -> tuple[str, ...]:
         """Names of the parameters, in the order of `values`."""
         return tuple(term.name(coefficient) for coefficient, term in self.terms)
