@@ -1,0 +1,196 @@
+"""One side of a lifting surface cut into panels: edges, vortices, normals and how these turn."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from alula.aircraft.geometry import Airfoil, ControlSurface, LiftingSurface
+from alula.base.arrays import Array
+
+Spacing = Literal["uniform", "cosine"]
+OTHER_WAY = frozenset(("da", "dr"))  # move the left half of a mirrored surface the other way
+_SAME = 1e-9  # of the span: breaks nearer than this are one
+
+
+class Half(NamedTuple):
+    """One side of a surface: m rows of s panels; the control's normal rates by control."""
+
+    vertices: Array  # (m, s + 1, 3)
+    control: Array  # (m, s, 3)
+    normal: Array  # (m, s, 3)
+    corners: Array  # (m, s, 4, 3)
+    rates: Mapping[str, Array]  # (m, s, 3)
+    trailing: Array  # (s + 1, 3)
+    quarter: Array  # (s, 3)
+    chord: Array  # (s,)
+
+
+def span_edges(surface: LiftingSurface, count: int, spacing: Spacing) -> Array:
+    """Fractions of the span at the edges of its strips, from 0 to 1.
+
+    Sections and ends of controls are edges; the strips between them keep the spacing's widths as
+    nearly as their whole number allows. Cosine: finer to the tip of a mirrored surface, to both
+    ends of another. More strips than asked for where there are more pieces.
+    """
+    arc = surface.arc()
+    ends = [x for c in surface.controls for x in (c.start, c.end)]
+    breaks = np.unique(np.concatenate([arc / arc[-1], ends, [0.0, 1.0]]))
+    breaks = breaks[np.concatenate([[True], np.diff(breaks) > _SAME])]
+    pieces = len(breaks) - 1
+    count = max(count, pieces)
+    k = np.arange(count + 1) / count
+    ideal = k
+    if spacing == "cosine":
+        ideal = np.sin(0.5 * np.pi * k) if surface.mirror else 0.5 - 0.5 * np.cos(np.pi * k)
+    ideal[-1] = 1.0
+    index = np.zeros(pieces + 1, dtype=int)
+    index[-1] = count
+    for i in range(1, pieces):
+        nearest = int(np.argmin(np.abs(ideal - breaks[i])))
+        index[i] = min(max(nearest, index[i - 1] + 1), count - (pieces - i))
+    return np.interp(ideal, ideal[index], breaks)
+
+
+def half_panels(
+    surface: LiftingSurface,
+    airfoils: Mapping[str, Airfoil],
+    mesh: tuple[int, int],
+    spacing: Spacing,
+    deflections: Mapping[str, float],
+    side: float,
+) -> Half:
+    """The surface as described; side -1: with the deflections of its image, not yet mirrored."""
+    m = mesh[0]
+    t = span_edges(surface, mesh[1], spacing)
+    middle = 0.5 * (t[1:] + t[:-1])
+    arc = surface.arc() / surface.arc()[-1]
+    position = np.array([s.position for s in surface.sections])
+    front = np.column_stack([np.interp(t, arc, position[:, k]) for k in range(3)])
+    chord = np.interp(t, arc, [s.chord for s in surface.sections])
+    xi = np.arange(m + 1) / m
+    if spacing == "cosine":
+        xi = 0.5 - 0.5 * np.cos(np.pi * xi)
+
+    def at(fraction: Array) -> Array:
+        """Points (len(fraction), s + 1, 3) at fractions of the chord."""
+        out = np.broadcast_to(front, (len(fraction), *front.shape)).copy()
+        out[:, :, 0] -= fraction[:, None] * chord
+        return out
+
+    width = np.diff(xi)
+    lines, vertices, behind = at(xi), at(xi[:-1] + 0.25 * width), at(xi[:-1] + 0.75 * width)
+    control = 0.5 * (behind[:, 1:] + behind[:, :-1])
+    corners = np.stack([lines[:-1, :-1], lines[:-1, 1:], lines[1:, 1:], lines[1:, :-1]], axis=2)
+
+    # Chord direction turned about the span's direction across the flow, then the normal to it.
+    line = np.diff(front, axis=0)
+    up = np.column_stack([np.zeros(len(line)), line[:, 2], -line[:, 1]])
+    up /= np.linalg.norm(up, axis=1)[:, None]
+    incidence = _incidence(surface, airfoils, arc, middle, xi[:-1] + 0.75 * width)
+    aft = -np.cos(incidence)[..., None] * [1.0, 0.0, 0.0] - np.sin(incidence)[..., None] * up
+    normal = np.cross(aft, behind[:, 1:] - behind[:, :-1])
+    normal /= np.linalg.norm(normal, axis=2)[..., None]
+
+    rates = {}
+    toward = _deflected(surface)
+    for control_surface in surface.controls:
+        axis, weight = _hinge(control_surface, front, chord, t, middle, xi, toward)
+        turn = sum(
+            gain * deflections.get(name, 0.0) * (side if name in OTHER_WAY else 1.0)
+            for name, gain in control_surface.gains.items()
+        )
+        if turn:
+            normal = _rotated(normal, axis, turn * weight)
+        rate = weight[..., None] * np.cross(np.broadcast_to(axis, normal.shape), normal)
+        for name, gain in control_surface.gains.items():
+            rates[name] = rates.get(name, 0.0) + gain * rate
+    quarter = 0.5 * (front[1:] + front[:-1])
+    mean = 0.5 * (chord[1:] + chord[:-1])
+    quarter[:, 0] -= 0.25 * mean
+    return Half(vertices, control, normal, corners, rates, lines[-1], quarter, mean)
+
+
+def _incidence(
+    surface: LiftingSurface, airfoils: Mapping[str, Airfoil], arc: Array, middle: Array, at: Array
+) -> Array:
+    """Angle (rad, nose up) of the mean line at fractions `at` of the chord, (len(at), strips).
+
+    An airfoil of which only the angle of zero lift is known is turned by it.
+    """
+    by_section = np.empty((len(surface.sections), len(at)))
+    for k, section in enumerate(surface.sections):
+        airfoil = airfoils[section.airfoil]
+        by_section[k] = section.twist
+        if airfoil.camber is not None:
+            x, z = airfoil.camber.T
+            by_section[k] -= np.arctan(np.interp(at, x, np.gradient(z, x)))
+        elif airfoil.alpha_0 is not None:
+            by_section[k] -= airfoil.alpha_0
+    return np.array([np.interp(middle, arc, column) for column in by_section.T])
+
+
+def _deflected(surface: LiftingSurface) -> Array:
+    """Where a positive deflection moves the trailing edge: down; on a fin to the left."""
+    step = surface.sections[-1].position - surface.sections[0].position
+    upright = abs(step[1]) <= _SAME * abs(step[2])
+    if upright or (surface.role == "fin" and step[2] != 0.0):
+        return np.array([0.0, -1.0, 0.0])
+    return np.array([0.0, 0.0, 1.0])
+
+
+def _hinge(
+    control: ControlSurface,
+    front: Array,
+    chord: Array,
+    t: Array,
+    middle: Array,
+    xi: Array,
+    toward: Array,
+) -> tuple[Array, Array]:
+    """Unit vectors along the hinge (strips, 3), and the share of each panel's turning (m, strips).
+
+    Right-handed rotation about them moves the trailing edge toward the given direction.
+    """
+    hinge = np.interp(t, [control.start, control.end], control.hinge)
+    line = front.copy()
+    line[:, 0] -= hinge * chord
+    axis = np.diff(line, axis=0)
+    axis /= np.linalg.norm(axis, axis=1)[:, None]
+    axis[np.cross(axis, [-1.0, 0.0, 0.0]) @ toward < 0.0] *= -1.0
+    at = np.interp(middle, [control.start, control.end], control.hinge)
+    inside = (middle > control.start) & (middle < control.end)
+    behind = (xi[1:, None] - at) / np.diff(xi)[:, None]
+    return axis, np.where(inside, np.clip(behind, 0.0, 1.0), 0.0)
+
+
+def _rotated(vectors: Array, axis: Array, angle: Array) -> Array:
+    """Vectors (m, s, 3) turned about the unit vectors (s, 3) by angles (m, s): Rodrigues."""
+    c, s = np.cos(angle)[..., None], np.sin(angle)[..., None]
+    e = np.broadcast_to(axis, vectors.shape)
+    along = np.sum(e * vectors, axis=2, keepdims=True)
+    return vectors * c + np.cross(e, vectors) * s + e * along * (1.0 - c)
+
+
+def image(half: Half) -> Half:
+    """The other side, its rows from tip to root so that bound vortices run to the right, too."""
+    flip = np.array([1.0, -1.0, 1.0])
+
+    def over(x: Array) -> Array:
+        return x[:, ::-1] * flip
+
+    rates = {
+        name: over(rate) * (-1.0 if name in OTHER_WAY else 1.0) for name, rate in half.rates.items()
+    }
+    return Half(
+        over(half.vertices),
+        over(half.control),
+        over(half.normal),
+        over(half.corners)[:, :, [1, 0, 3, 2]],
+        rates,
+        half.trailing[::-1] * flip,
+        half.quarter[::-1] * flip,
+        half.chord[::-1],
+    )
