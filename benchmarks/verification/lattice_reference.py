@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Any
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "predict"))
-from lattice_shapes import reference_case  # noqa: E402
+from lattice_shapes import reference_case
 
-from alula.predict.vortex_lattice import vortex_lattice  # noqa: E402
+from alula.predict.vortex_lattice import vortex_lattice
 
 UNIT = 1e-6  # of the last printed digit; trailing zeros are not printed
 # The reference's names, in Alula's: its elevator is positive as de is.

@@ -21,23 +21,21 @@ class Half(NamedTuple):
     vertices: Array  # (m, s + 1, 3)
     control: Array  # (m, s, 3)
     normal: Array  # (m, s, 3)
-    corners: Array  # (m, s, 4, 3)
+    lines: Array  # (m + 1, s + 1, 3), corners of the panels
     rates: Mapping[str, Array]  # (m, s, 3)
-    trailing: Array  # (s + 1, 3)
     quarter: Array  # (s, 3)
     chord: Array  # (s,)
 
 
-def span_edges(surface: LiftingSurface, count: int, spacing: Spacing) -> Array:
-    """Fractions of the span at the edges of its strips, from 0 to 1.
+def span_edges(surface: LiftingSurface, arc: Array, count: int, spacing: Spacing) -> Array:
+    """Fractions of the span at the edges of its strips, from 0 to 1. arc: those of its sections.
 
     Sections and ends of controls are edges; the strips between them keep the spacing's widths as
     nearly as their whole number allows. Cosine: finer to the tip of a mirrored surface, to both
     ends of another. More strips than asked for where there are more pieces.
     """
-    arc = surface.arc()
     ends = [x for c in surface.controls for x in (c.start, c.end)]
-    breaks = np.unique(np.concatenate([arc / arc[-1], ends, [0.0, 1.0]]))
+    breaks = np.unique(np.concatenate([arc, ends, [0.0, 1.0]]))
     breaks = breaks[np.concatenate([[True], np.diff(breaks) > _SAME])]
     pieces = len(breaks) - 1
     count = max(count, pieces)
@@ -64,12 +62,12 @@ def half_panels(
 ) -> Half:
     """The surface as described; side -1: with the deflections of its image, not yet mirrored."""
     m = mesh[0]
-    t = span_edges(surface, mesh[1], spacing)
+    arc = surface.arc()
+    arc = arc / arc[-1]
+    t = span_edges(surface, arc, mesh[1], spacing)
     middle = 0.5 * (t[1:] + t[:-1])
-    arc = surface.arc() / surface.arc()[-1]
-    position = np.array([s.position for s in surface.sections])
-    front = np.column_stack([np.interp(t, arc, position[:, k]) for k in range(3)])
-    chord = np.interp(t, arc, [s.chord for s in surface.sections])
+    edges = _between(np.array([[*s.position, s.chord] for s in surface.sections]), arc, t)
+    front, chord = edges[:, :3], edges[:, 3]
     xi = np.arange(m + 1) / m
     if spacing == "cosine":
         xi = 0.5 - 0.5 * np.cos(np.pi * xi)
@@ -80,19 +78,19 @@ def half_panels(
         out[:, :, 0] -= fraction[:, None] * chord
         return out
 
-    width = np.diff(xi)
+    width = xi[1:] - xi[:-1]
     lines, vertices, behind = at(xi), at(xi[:-1] + 0.25 * width), at(xi[:-1] + 0.75 * width)
     control = 0.5 * (behind[:, 1:] + behind[:, :-1])
-    corners = np.stack([lines[:-1, :-1], lines[:-1, 1:], lines[1:, 1:], lines[1:, :-1]], axis=2)
 
     # Chord direction turned about the span's direction across the flow, then the normal to it.
-    line = np.diff(front, axis=0)
-    up = np.column_stack([np.zeros(len(line)), line[:, 2], -line[:, 1]])
-    up /= np.linalg.norm(up, axis=1)[:, None]
+    line = front[1:] - front[:-1]
+    up = np.zeros_like(line)
+    up[:, 1], up[:, 2] = line[:, 2], -line[:, 1]
+    up = _unit(up)
     incidence = _incidence(surface, airfoils, arc, middle, xi[:-1] + 0.75 * width)
-    aft = -np.cos(incidence)[..., None] * [1.0, 0.0, 0.0] - np.sin(incidence)[..., None] * up
-    normal = np.cross(aft, behind[:, 1:] - behind[:, :-1])
-    normal /= np.linalg.norm(normal, axis=2)[..., None]
+    aft = -np.sin(incidence)[..., None] * up
+    aft[..., 0] = -np.cos(incidence)
+    normal = _unit(cross(aft, behind[:, 1:] - behind[:, :-1]))
 
     rates = {}
     toward = _deflected(surface)
@@ -104,13 +102,13 @@ def half_panels(
         )
         if turn:
             normal = _rotated(normal, axis, turn * weight)
-        rate = weight[..., None] * np.cross(np.broadcast_to(axis, normal.shape), normal)
+        rate = weight[..., None] * cross(axis, normal)
         for name, gain in control_surface.gains.items():
             rates[name] = rates.get(name, 0.0) + gain * rate
     quarter = 0.5 * (front[1:] + front[:-1])
     mean = 0.5 * (chord[1:] + chord[:-1])
     quarter[:, 0] -= 0.25 * mean
-    return Half(vertices, control, normal, corners, rates, lines[-1], quarter, mean)
+    return Half(vertices, control, normal, lines, rates, quarter, mean)
 
 
 def _incidence(
@@ -126,10 +124,14 @@ def _incidence(
         by_section[k] = section.twist
         if airfoil.camber is not None:
             x, z = airfoil.camber.T
-            by_section[k] -= np.arctan(np.interp(at, x, np.gradient(z, x)))
+            by_section[k] -= np.arctan(np.interp(at, x, _slope(x, z)))
         elif airfoil.alpha_0 is not None:
             by_section[k] -= airfoil.alpha_0
-    return np.array([np.interp(middle, arc, column) for column in by_section.T])
+    return _between(by_section, arc, middle).T
+
+
+def _slope(x: Array, z: Array) -> Array:
+    return np.asarray(np.gradient(z, x, edge_order=2 if len(x) > 2 else 1))
 
 
 def _deflected(surface: LiftingSurface) -> Array:
@@ -157,21 +159,39 @@ def _hinge(
     hinge = np.interp(t, [control.start, control.end], control.hinge)
     line = front.copy()
     line[:, 0] -= hinge * chord
-    axis = np.diff(line, axis=0)
-    axis /= np.linalg.norm(axis, axis=1)[:, None]
-    axis[np.cross(axis, [-1.0, 0.0, 0.0]) @ toward < 0.0] *= -1.0
+    axis = _unit(line[1:] - line[:-1])
+    # Axis x aft is where the trailing edge goes.
+    axis[toward[2] * axis[:, 1] < toward[1] * axis[:, 2]] *= -1.0
     at = np.interp(middle, [control.start, control.end], control.hinge)
     inside = (middle > control.start) & (middle < control.end)
-    behind = (xi[1:, None] - at) / np.diff(xi)[:, None]
-    return axis, np.where(inside, np.clip(behind, 0.0, 1.0), 0.0)
+    behind = (xi[1:, None] - at) / (xi[1:] - xi[:-1])[:, None]
+    return axis, np.minimum(np.maximum(behind, 0.0), 1.0) * inside
+
+
+def _between(rows: Array, arc: Array, t: Array) -> Array:
+    """Rows (sections, k) interpolated to places (len(t), k) along the span."""
+    i = np.minimum(np.searchsorted(arc, t, side="right"), len(arc) - 1)
+    w = ((t - arc[i - 1]) / (arc[i] - arc[i - 1]))[:, None]
+    return rows[i - 1] * (1.0 - w) + rows[i] * w
+
+
+def _unit(vectors: Array) -> Array:
+    return vectors / np.sqrt(np.einsum("...i,...i", vectors, vectors))[..., None]
+
+
+def cross(a: Array, b: Array) -> Array:
+    """Cross product over the last axis; NumPy's own takes several times as long on few vectors."""
+    out = np.empty(np.broadcast_shapes(a.shape, b.shape))
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        np.subtract(a[..., j] * b[..., k], a[..., k] * b[..., j], out=out[..., i])
+    return out
 
 
 def _rotated(vectors: Array, axis: Array, angle: Array) -> Array:
     """Vectors (m, s, 3) turned about the unit vectors (s, 3) by angles (m, s): Rodrigues."""
     c, s = np.cos(angle)[..., None], np.sin(angle)[..., None]
-    e = np.broadcast_to(axis, vectors.shape)
-    along = np.sum(e * vectors, axis=2, keepdims=True)
-    return vectors * c + np.cross(e, vectors) * s + e * along * (1.0 - c)
+    along = np.sum(axis * vectors, axis=2, keepdims=True)
+    return vectors * c + cross(axis, vectors) * s + axis * along * (1.0 - c)
 
 
 def image(half: Half) -> Half:
@@ -188,9 +208,8 @@ def image(half: Half) -> Half:
         over(half.vertices),
         over(half.control),
         over(half.normal),
-        over(half.corners)[:, :, [1, 0, 3, 2]],
+        over(half.lines),
         rates,
-        half.trailing[::-1] * flip,
         half.quarter[::-1] * flip,
         half.chord[::-1],
     )

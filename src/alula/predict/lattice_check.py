@@ -165,9 +165,7 @@ def wakes_near(panels: Panels, stream: Array, core: float) -> tuple[Message, ...
     ends = np.concatenate([panels.strip_first, panels.strip_last]) @ stream.T
     points = panels.strip_control @ stream.T
     of = np.concatenate([panels.strip_surface, panels.strip_surface])
-    apart = np.hypot(
-        points[:, None, 1] - ends[None, :, 1], points[:, None, 2] - ends[None, :, 2]
-    )
+    apart = np.hypot(points[:, None, 1] - ends[None, :, 1], points[:, None, 2] - ends[None, :, 2])
     other = (panels.strip_surface[:, None] != of) & (points[:, None, 0] > ends[None, :, 0])
     near = np.where(other, apart / panels.strip_width[:, None], np.inf)
     return tuple(_wake_messages(panels, near, of))
@@ -182,14 +180,14 @@ def _wake_messages(panels: Panels, near: Array, of: Array) -> Iterator[Message]:
             least = float(pair.min()) if pair.size else np.inf
             if least >= _NEAR:
                 continue
-            say = dict(
-                where=f"vortex_lattice, surfaces '{source}' and '{name}'",
-                expected=f"trailing legs of '{source}' at least {_NEAR:g} of a strip's width from "
-                f"the control points of '{name}'",
-                found=f"{least:.2g} of it",
-                do="Change the number of strips so that those of the two surfaces fall together, "
-                "or ask for a vortex core between surfaces.",
-            )
+            say = {
+                "where": f"vortex_lattice, surfaces '{source}' and '{name}'",
+                "expected": f"trailing legs of '{source}' at least {_NEAR:g} of a strip's width "
+                f"from the control points of '{name}'",
+                "found": f"{least:.2g} of it",
+                "do": "Change the number of strips so that those of the two surfaces fall "
+                "together, or ask for a vortex core between surfaces.",
+            }
             if least < _IN:
                 raise refuse("wake_in_panel", **say)
             yield warn("wake_near_panel", **say)

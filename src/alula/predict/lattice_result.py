@@ -77,7 +77,9 @@ class LatticeResult:
         values, _ = turned(self.body_coefficients, self.body_derivatives, self.alpha, axes)
         return dict(zip(coefficient_names(axes), map(float, values), strict=True))
 
-    def derivatives(self, axes: LatticeAxes = "model", *, per_degree: bool = False) -> dict[str, float]:
+    def derivatives(
+        self, axes: LatticeAxes = "model", *, per_degree: bool = False
+    ) -> dict[str, float]:
         """Every derivative by name ('CL_alpha', 'Cm_q', 'Cn_dr'), zeros by symmetry left out.
 
         per_degree: to alpha, beta and controls per degree, as 'CL_alpha_per_deg'; rates stay per

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -25,13 +26,14 @@ class Panels:
     """A lattice as the core takes it, body axes, m; n panels in rows, k strips, c controls.
 
     vertices: (n + rows, 3), of the bound vortices, row by row; row_start: (rows + 1,); row_surface:
-    (rows,). control, normal: (n, 3). corners: (n, 4, 3), around each panel. normal_rate: (c, n, 3),
+    (rows,). control, normal: (n, 3). normal_rate: (c, n, 3),
     1/rad of each of `controls`; parity: (c,), 1 or -1 by symmetry. The first `right` panels have
     their images `mirror` at the end, the next `center` lie in the plane of symmetry; right = 0:
     symmetry is not used. strip: (n,); strip_first, strip_last: (k, 3), ends of the trailing edge;
     strip_middle: (k, 3), at the quarter chord; strip_chord, strip_width: (k,), m, across the
     flow; strip_control: (k, 3), mean control point; strip_surface: (k,). surfaces: names; mesh:
-    (chordwise, spanwise of the half) panels as made, by surface.
+    (chordwise, spanwise of the half) panels as made, by surface. lines: (m + 1, s + 1, 3) by half
+    of a surface, corners of its m rows of s panels.
     """
 
     surfaces: tuple[str, ...]
@@ -42,7 +44,7 @@ class Panels:
     row_surface: NDArray[np.int32]
     control: Array
     normal: Array
-    corners: Array
+    lines: tuple[Array, ...]
     normal_rate: Array
     parity: Array
     mirror: NDArray[np.int32]
@@ -61,6 +63,16 @@ class Panels:
     def count(self) -> int:
         """Number of panels, both halves."""
         return len(self.control)
+
+    @property
+    def corners(self) -> Array:
+        """(n, 4, 3): around each panel, from the leading edge's first end."""
+        return np.concatenate(
+            [
+                np.stack([x[:-1, :-1], x[:-1, 1:], x[1:, 1:], x[1:, :-1]], axis=2).reshape(-1, 4, 3)
+                for x in self.lines
+            ]
+        )
 
 
 def make_panels(
@@ -147,8 +159,8 @@ def _joined(
     def flat(arrays: list[Array]) -> Array:
         return np.ascontiguousarray(np.concatenate([a.reshape(-1, *a.shape[2:]) for a in arrays]))
 
-    first = np.concatenate([h.trailing[:-1] for _, h in halves])
-    last = np.concatenate([h.trailing[1:] for _, h in halves])
+    first = np.concatenate([h.lines[-1, :-1] for _, h in halves])
+    last = np.concatenate([h.lines[-1, 1:] for _, h in halves])
     across = last - first
     return Panels(
         surfaces=tuple(s.name for s in geometry.surfaces),
@@ -159,7 +171,7 @@ def _joined(
         row_surface=np.array(row_surface, dtype=np.int32),
         control=flat([h.control for _, h in halves]),
         normal=flat([h.normal for _, h in halves]),
-        corners=flat([h.corners for _, h in halves]),
+        lines=tuple(h.lines for _, h in halves),
         normal_rate=rate,
         parity=np.array([-1.0 if c in OTHER_WAY else 1.0 for c in controls]),
         mirror=np.concatenate([*mirror, []]).astype(np.int32),
