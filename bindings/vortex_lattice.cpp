@@ -33,10 +33,10 @@ auto transposed(const M& m) {
 }
 
 Result vortex_lattice(Matrix vertices, Integers row_start, Integers row_surface, Matrix control,
-                      Matrix normal, Cube normal_rate, Vector parity, Integers mirror, int right,
-                      int center, Integers strip, Matrix strip_first, Matrix strip_last,
-                      double alpha, double beta, double mach, Vector rate, Vector point,
-                      Vector reference, double core) {
+                      Matrix middle, Matrix normal, Cube normal_rate, Vector parity,
+                      Integers mirror, int right, int center, Integers strip, Matrix strip_first,
+                      Matrix strip_last, Matrix strip_middle, double alpha, double beta,
+                      double mach, Vector rate, Vector point, Vector reference, double core) {
   Lattice a;
   const std::size_t n = control.shape(0), strips = strip_first.shape(0);
   if (n < 1 || n > static_cast<std::size_t>(kMaxPanels))
@@ -52,6 +52,7 @@ Result vortex_lattice(Matrix vertices, Integers row_start, Integers row_surface,
     throw nb::value_error("row_start: the rows must hold all vertices");
   a.row_surface = integers(row_surface, rows, static_cast<int>(rows), "row_surface");
   a.control = points(control, n, "control: expected (panels, 3)");
+  a.middle = points(middle, n, "middle: expected (panels, 3)");
   a.normal = points(normal, n, "normal: expected (panels, 3)");
   if (normal_rate.shape(1) != n || normal_rate.shape(2) != 3 ||
       parity.shape(0) != normal_rate.shape(0))
@@ -68,6 +69,7 @@ Result vortex_lattice(Matrix vertices, Integers row_start, Integers row_surface,
   a.strip = integers(strip, n, static_cast<int>(strips), "strip");
   a.strip_first = points(strip_first, strips, "strip_first: expected (strips, 3)");
   a.strip_last = points(strip_last, strips, "strip_last: expected (strips, 3)");
+  a.strip_middle = points(strip_middle, strips, "strip_middle: expected (strips, 3)");
   Condition at;
   const auto three = [](Vector v, const char* what) {
     const auto x = vec3(v, what);
@@ -113,10 +115,11 @@ double factor_time(int n) {
 void bind_vortex_lattice(nb::module_& m) {
   m.attr("LATTICE_PANELS") = kMaxPanels;
   m.def("vortex_lattice", &vortex_lattice, nb::arg("vertices"), nb::arg("row_start"),
-        nb::arg("row_surface"), nb::arg("control"), nb::arg("normal"), nb::arg("normal_rate"),
-        nb::arg("parity"), nb::arg("mirror"), nb::arg("right"), nb::arg("center"), nb::arg("strip"),
-        nb::arg("strip_first"), nb::arg("strip_last"), nb::arg("alpha"), nb::arg("beta"),
-        nb::arg("mach"), nb::arg("rate"), nb::arg("point"), nb::arg("reference"), nb::arg("core"),
+        nb::arg("row_surface"), nb::arg("control"), nb::arg("middle"), nb::arg("normal"),
+        nb::arg("normal_rate"), nb::arg("parity"), nb::arg("mirror"), nb::arg("right"),
+        nb::arg("center"), nb::arg("strip"), nb::arg("strip_first"), nb::arg("strip_last"),
+        nb::arg("strip_middle"), nb::arg("alpha"), nb::arg("beta"), nb::arg("mach"),
+        nb::arg("rate"), nb::arg("point"), nb::arg("reference"), nb::arg("core"),
         "Loads of a lattice and their derivatives to alpha, beta, phat, qhat, rhat and controls, "
         "body axes; see core/host/include/alula/host/vortex_lattice.hpp.");
   m.def("lattice_factor_time", &factor_time, nb::arg("n"),

@@ -12,7 +12,7 @@ using namespace alula::lattice;
 // fin of 1 row of 2 in the plane of symmetry with another. symmetric: use is made of it.
 Lattice aircraft(bool symmetric, double deflection = 0.0) {
   Lattice a;
-  std::vector<Vector3d> vertices, control, normal, rate, rate_fin, first, last;
+  std::vector<Vector3d> vertices, control, bound, wash, normal, rate, rate_fin, first, last;
   std::vector<int> strip, image;
   int surface = 0, strips = 0;
   const auto half = [&](int rows, int spans, bool fin, double side) {
@@ -30,6 +30,7 @@ Lattice aircraft(bool symmetric, double deflection = 0.0) {
         const int k = side > 0 ? i : spans - 1 - i;
         const Vector3d p = place(x0 + 0.75 * c, k), q = place(x0 + 0.75 * c, k + 1);
         control.push_back(0.5 * (p + q));
+        bound.push_back(0.5 * (place(x0 + 0.25 * c, k) + place(x0 + 0.25 * c, k + 1)));
         const Vector3d line = (side > 0 ? q - p : p - q).normalized();
         const double twist = fin ? 0.0 : 0.05 - 0.02 * k + 0.01 * j;
         const double turn = (fin ? 0.0 : 0.7 * deflection) + twist;
@@ -46,6 +47,7 @@ Lattice aircraft(bool symmetric, double deflection = 0.0) {
     for (int i = 0; i < spans; ++i) {
       const int k = side > 0 ? i : spans - 1 - i, step = side > 0 ? 0 : 1;
       first.push_back(place(0.6, k + step)), last.push_back(place(0.6, k + 1 - step));
+      wash.push_back(0.5 * (first.back() + last.back()));
     }
     strips += spans;
   };
@@ -60,6 +62,7 @@ Lattice aircraft(bool symmetric, double deflection = 0.0) {
   a.vertices = points(vertices), a.control = points(control), a.normal = points(normal);
   a.normal_rate = {points(rate), points(rate_fin)};
   a.parity = {1, -1};
+  a.middle = points(bound), a.strip_middle = points(wash);
   a.strip = strip, a.strip_first = points(first), a.strip_last = points(last);
   a.right = symmetric ? 6 : 0, a.center = symmetric ? 2 : 14;
   for (int j = 0; symmetric && j < 2; ++j)
@@ -148,7 +151,7 @@ TEST(VortexLattice, HorseshoeByBiotAndSavart) {
   one.vertices.col(0) << 0.0, -0.5, 0.0;
   one.vertices.col(1) << -0.2, 0.7, 0.1;
   one.row_start = {0, 2}, one.row_surface = {0};
-  one.control = one.normal = point;
+  one.control = one.normal = one.middle = point;
   Condition at;
   const WindLattice wind = along_the_wind(one, at);
   const MatrixXd v = induced(one, wind, wind.control, 1, VectorXd::Ones(1));

@@ -22,9 +22,10 @@ from lattice_shapes import (
 from tests.data import data
 
 from alula.aircraft.geometry import Airfoil, ControlSurface, Geometry
+from alula.base.arrays import Array
 from alula.base.messages import BadInput
 from alula.model import Reference
-from alula.predict.lattice_axes import LatticeAxes
+from alula.predict.lattice_axes import LatticeAxes, coefficient_names
 from alula.predict.mesh_study import mesh_study
 from alula.predict.vortex_lattice import vortex_lattice
 
@@ -61,8 +62,8 @@ def test_elliptic_wing_of_lifting_line_theory() -> None:
         shape = geometry(surface("wing", sections, panels=(1, strips)))
         found.append(vortex_lattice(shape, reference, np.zeros(3), alpha=0.05))
     # Trailing legs at the very tips make the span seem larger, with the first order of the strips'
-    # width: extrapolated. Prandtl 1918: CL_alpha = 2 pi A/(A + 2), e = 1; lifting surfaces of A = 40
-    # are 0.1 % below the line (Helmbold 1942).
+    # width: extrapolated. Prandtl 1918: CL_alpha = 2 pi A/(A + 2), e = 1; lifting surfaces of
+    # A = 40 are 0.1 % below the line (Helmbold 1942).
     slope = [r.derivatives()["CL_alpha"] for r in found]
     ideal = 2 * np.pi * aspect / (aspect + 2)
     assert 2 * slope[1] - slope[0] == pytest.approx(ideal, rel=4e-3)
@@ -147,26 +148,25 @@ def test_derivatives_are_those_of_whole_solutions(
     at: dict[str, Any] = {"alpha": 0.09, "beta": beta, "mach": mach}
     deflected = {"de": -0.05, "df": 0.1}
     got = vortex_lattice(shape, reference, point, deflections=deflected, **at).derivatives(axes)
-    h = 1e-5
+    h = 4e-5
 
-    def solved(name: str, by: float) -> dict[str, float]:
+    def solved(name: str, by: float) -> Array:
         there, moved = dict(at), dict(deflected)
         if name in there:
             there[name] += by
         else:
             moved[name] = moved.get(name, 0.0) + by
-        return vortex_lattice(shape, reference, point, deflections=moved, **there).coefficients(
-            axes
-        )
+        loads = vortex_lattice(shape, reference, point, deflections=moved, **there)
+        return np.array(list(loads.coefficients(axes).values()))
 
     for name in ("alpha", "beta", "de", "da", "dr", "df"):
-        plus, minus = solved(name, h), solved(name, -h)
-        for coefficient in plus:
+        wide, narrow = ((solved(name, x) - solved(name, -x)) / (2 * x) for x in (2 * h, h))
+        # Extrapolated: h^4 times fifth derivatives remain, which the fin beside the tailplane's
+        # wake makes large, and rounding over h.
+        for coefficient, want in zip(coefficient_names(axes), (4 * narrow - wide) / 3, strict=True):
             key = f"{coefficient}_{name}"
             if key in got:
-                want = (plus[coefficient] - minus[coefficient]) / (2 * h)
-                # h^2 times third derivatives, and rounding over h, of moments of order 100.
-                assert got[key] == pytest.approx(want, rel=1e-6, abs=2e-7), key
+                assert got[key] == pytest.approx(want, rel=1e-8, abs=1e-8), key
 
 
 def test_prandtl_glauert_stretches_the_wing() -> None:
@@ -272,14 +272,14 @@ def test_a_vortex_core_acts_between_surfaces_only() -> None:
 
 def test_a_mesh_study_covers_what_finer_panels_change() -> None:
     reference, point = unit()
-    study = mesh_study(rectangle(panels=(2, 8)), reference, point)
-    fine = vortex_lattice(rectangle(panels=(12, 48)), reference, point).derivatives()
+    study = mesh_study(rectangle(panels=(4, 12)), reference, point)
+    fine = vortex_lattice(rectangle(panels=(24, 72)), reference, point).derivatives()
     for name in ("CL_alpha", "CL_q", "Cm_q", "Cl_p"):
         # The finer mesh is within the bar, and the extrapolation nearer than the mesh.
         change = abs(fine[name] - study.values[name][0])
         assert 0.3 * study.error[name] < change < study.error[name], name
         assert abs(study.limit[name] - fine[name]) < 0.5 * change, name
-    assert list(study.counts) == [32, 72, 128]
+    assert list(study.counts) == [96, 216, 384]
     predicted = study.result.as_derivatives(study.error)
     estimate = predicted.values["CL_alpha"]
     assert estimate.se == pytest.approx(np.hypot(0.1 * estimate.value, study.error["CL_alpha"]))

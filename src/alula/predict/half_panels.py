@@ -20,36 +20,44 @@ class Half(NamedTuple):
 
     vertices: Array  # (m, s + 1, 3)
     control: Array  # (m, s, 3)
+    bound: Array  # (m, s, 3), on the bound vortices
     normal: Array  # (m, s, 3)
     lines: Array  # (m + 1, s + 1, 3), corners of the panels
     rates: Mapping[str, Array]  # (m, s, 3)
     quarter: Array  # (s, 3)
+    wash: Array  # (s, 3), on the trailing edge
     chord: Array  # (s,)
 
 
-def span_edges(surface: LiftingSurface, arc: Array, count: int, spacing: Spacing) -> Array:
-    """Fractions of the span at the edges of its strips, from 0 to 1. arc: those of its sections.
+def span_edges(
+    surface: LiftingSurface, arc: Array, count: int, spacing: Spacing
+) -> tuple[Array, Array]:
+    """Fractions of the span at the edges of its strips, from 0 to 1, and between them where the flow
+    is looked at. arc: fractions of the sections.
 
     Sections and ends of controls are edges; the strips between them keep the spacing's widths as
     nearly as their whole number allows. Cosine: finer to the tip of a mirrored surface, to both
-    ends of another. More strips than asked for where there are more pieces.
+    ends of another. Between edges that lie by a cosine the flow is looked at in the middle of its
+    angle; where it is the middle of the strip, loads of fine strips swing. More strips than asked
+    for where there are more pieces.
     """
     ends = [x for c in surface.controls for x in (c.start, c.end)]
     breaks = np.unique(np.concatenate([arc, ends, [0.0, 1.0]]))
     breaks = breaks[np.concatenate([[True], np.diff(breaks) > _SAME])]
     pieces = len(breaks) - 1
     count = max(count, pieces)
-    k = np.arange(count + 1) / count
-    ideal = k
-    if spacing == "cosine":
-        ideal = np.sin(0.5 * np.pi * k) if surface.mirror else 0.5 - 0.5 * np.cos(np.pi * k)
-    ideal[-1] = 1.0
+    ideal = np.arange(2 * count + 1) / (2 * count)
+    if spacing == "cosine" and surface.mirror:
+        ideal = np.sin(0.5 * np.pi * ideal)
+    elif spacing == "cosine":
+        ideal = 0.5 - 0.5 * np.cos(np.pi * ideal)
+    ideal, between = ideal[::2], ideal[1::2]
     index = np.zeros(pieces + 1, dtype=int)
     index[-1] = count
     for i in range(1, pieces):
         nearest = int(np.argmin(np.abs(ideal - breaks[i])))
         index[i] = min(max(nearest, index[i - 1] + 1), count - (pieces - i))
-    return np.interp(ideal, ideal[index], breaks)
+    return np.interp(ideal, ideal[index], breaks), np.interp(between, ideal[index], breaks)
 
 
 def half_panels(
@@ -64,8 +72,8 @@ def half_panels(
     m = mesh[0]
     arc = surface.arc()
     arc = arc / arc[-1]
-    t = span_edges(surface, arc, mesh[1], spacing)
-    middle = 0.5 * (t[1:] + t[:-1])
+    t, middle = span_edges(surface, arc, mesh[1], spacing)
+    share = ((middle - t[:-1]) / (t[1:] - t[:-1]))[:, None]
     edges = _between(np.array([[*s.position, s.chord] for s in surface.sections]), arc, t)
     front, chord = edges[:, :3], edges[:, 3]
     xi = np.arange(m + 1) / m
@@ -80,7 +88,11 @@ def half_panels(
 
     width = xi[1:] - xi[:-1]
     lines, vertices, behind = at(xi), at(xi[:-1] + 0.25 * width), at(xi[:-1] + 0.75 * width)
-    control = 0.5 * (behind[:, 1:] + behind[:, :-1])
+
+    def inside(points: Array) -> Array:
+        return points[:, :-1] * (1.0 - share) + points[:, 1:] * share
+
+    control, bound = inside(behind), inside(vertices)
 
     # Chord direction turned about the span's direction across the flow, then the normal to it.
     line = front[1:] - front[:-1]
@@ -92,7 +104,7 @@ def half_panels(
     aft[..., 0] = -np.cos(incidence)
     normal = _unit(cross(aft, behind[:, 1:] - behind[:, :-1]))
 
-    rates = {}
+    rates: dict[str, Array] = {}
     toward = _deflected(surface)
     for control_surface in surface.controls:
         axis, weight = _hinge(control_surface, front, chord, t, middle, xi, toward)
@@ -104,11 +116,12 @@ def half_panels(
             normal = _rotated(normal, axis, turn * weight)
         rate = weight[..., None] * cross(axis, normal)
         for name, gain in control_surface.gains.items():
-            rates[name] = rates.get(name, 0.0) + gain * rate
-    quarter = 0.5 * (front[1:] + front[:-1])
+            rates[name] = gain * rate + rates.get(name, 0.0)
+    quarter = inside(at(np.array([0.25])))[0]
     mean = 0.5 * (chord[1:] + chord[:-1])
-    quarter[:, 0] -= 0.25 * mean
-    return Half(vertices, control, normal, lines, rates, quarter, mean)
+    return Half(
+        vertices, control, bound, normal, lines, rates, quarter, inside(lines[-1:])[0], mean
+    )
 
 
 def _incidence(
@@ -172,11 +185,14 @@ def _between(rows: Array, arc: Array, t: Array) -> Array:
     """Rows (sections, k) interpolated to places (len(t), k) along the span."""
     i = np.minimum(np.searchsorted(arc, t, side="right"), len(arc) - 1)
     w = ((t - arc[i - 1]) / (arc[i] - arc[i - 1]))[:, None]
-    return rows[i - 1] * (1.0 - w) + rows[i] * w
+    out: Array = rows[i - 1] * (1.0 - w) + rows[i] * w
+    return out
 
 
 def _unit(vectors: Array) -> Array:
-    return vectors / np.sqrt(np.einsum("...i,...i", vectors, vectors))[..., None]
+    length = np.sqrt(np.einsum("...i,...i", vectors, vectors))
+    out: Array = vectors / length[..., None]
+    return out
 
 
 def cross(a: Array, b: Array) -> Array:
@@ -191,7 +207,8 @@ def _rotated(vectors: Array, axis: Array, angle: Array) -> Array:
     """Vectors (m, s, 3) turned about the unit vectors (s, 3) by angles (m, s): Rodrigues."""
     c, s = np.cos(angle)[..., None], np.sin(angle)[..., None]
     along = np.sum(axis * vectors, axis=2, keepdims=True)
-    return vectors * c + cross(axis, vectors) * s + axis * along * (1.0 - c)
+    out: Array = vectors * c + cross(axis, vectors) * s + axis * along * (1.0 - c)
+    return out
 
 
 def image(half: Half) -> Half:
@@ -199,7 +216,8 @@ def image(half: Half) -> Half:
     flip = np.array([1.0, -1.0, 1.0])
 
     def over(x: Array) -> Array:
-        return x[:, ::-1] * flip
+        out: Array = x[:, ::-1] * flip
+        return out
 
     rates = {
         name: over(rate) * (-1.0 if name in OTHER_WAY else 1.0) for name, rate in half.rates.items()
@@ -207,9 +225,11 @@ def image(half: Half) -> Half:
     return Half(
         over(half.vertices),
         over(half.control),
+        over(half.bound),
         over(half.normal),
         over(half.lines),
         rates,
         half.quarter[::-1] * flip,
+        half.wash[::-1] * flip,
         half.chord[::-1],
     )

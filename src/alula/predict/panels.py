@@ -26,10 +26,11 @@ class Panels:
     """A lattice as the core takes it, body axes, m; n panels in rows, k strips, c controls.
 
     vertices: (n + rows, 3), of the bound vortices, row by row; row_start: (rows + 1,); row_surface:
-    (rows,). control, normal: (n, 3). normal_rate: (c, n, 3),
+    (rows,). control, middle (on the bound vortices), normal: (n, 3). normal_rate: (c, n, 3),
     1/rad of each of `controls`; parity: (c,), 1 or -1 by symmetry. The first `right` panels have
     their images `mirror` at the end, the next `center` lie in the plane of symmetry; right = 0:
     symmetry is not used. strip: (n,); strip_first, strip_last: (k, 3), ends of the trailing edge;
+    strip_wash: (k, 3), on it between them;
     strip_middle: (k, 3), at the quarter chord; strip_chord, strip_width: (k,), m, across the
     flow; strip_control: (k, 3), mean control point; strip_surface: (k,). surfaces: names; mesh:
     (chordwise, spanwise of the half) panels as made, by surface. lines: (m + 1, s + 1, 3) by half
@@ -43,6 +44,7 @@ class Panels:
     row_start: NDArray[np.int32]
     row_surface: NDArray[np.int32]
     control: Array
+    middle: Array
     normal: Array
     lines: tuple[Array, ...]
     normal_rate: Array
@@ -53,6 +55,7 @@ class Panels:
     strip: NDArray[np.int32]
     strip_first: Array
     strip_last: Array
+    strip_wash: Array
     strip_middle: Array
     strip_chord: Array
     strip_width: Array
@@ -170,6 +173,7 @@ def _joined(
         row_start=np.concatenate([[0], np.cumsum(rows)]).astype(np.int32),
         row_surface=np.array(row_surface, dtype=np.int32),
         control=flat([h.control for _, h in halves]),
+        middle=flat([h.bound for _, h in halves]),
         normal=flat([h.normal for _, h in halves]),
         lines=tuple(h.lines for _, h in halves),
         normal_rate=rate,
@@ -180,6 +184,7 @@ def _joined(
         strip=np.concatenate(strip).astype(np.int32),
         strip_first=first,
         strip_last=last,
+        strip_wash=np.concatenate([h.wash for _, h in halves]),
         strip_middle=np.concatenate([h.quarter for _, h in halves]),
         strip_chord=np.concatenate([h.chord for _, h in halves]),
         strip_width=np.hypot(across[:, 1], across[:, 2]),

@@ -85,8 +85,9 @@ def vortex_lattice(
     said += wakes_near(lattice, _stream(alpha, beta), numbers["core"])
     found = compiled.vortex_lattice(
         lattice.vertices, lattice.row_start, lattice.row_surface, lattice.control,
-        lattice.normal, lattice.normal_rate, lattice.parity, lattice.mirror,
+        lattice.middle, lattice.normal, lattice.normal_rate, lattice.parity, lattice.mirror,
         lattice.right, lattice.center, lattice.strip, lattice.strip_first, lattice.strip_last,
+        lattice.strip_wash,
         alpha, beta, mach, np.zeros(3), point,
         np.array([reference.S, reference.b, reference.c]), numbers["core"],
     )  # fmt: skip
@@ -154,7 +155,7 @@ def _result(
         symmetric=lattice.right > 0,
         panels=lattice,
         circulation=frozen(found["circulation"][:, 0]),
-        circulation_rates=frozen(found["circulation_rates"].T),
+        circulation_rates=frozen(found["circulation_rates"]),
         force=frozen(found["force"]),
         span_loads=_span_loads(lattice, found),
         messages=(),

@@ -27,12 +27,14 @@ struct Lattice {
   std::vector<int> row_start;       // rows + 1
   std::vector<int> row_surface;     // rows: which surface, for the vortex core between surfaces
   Points control, normal;           // one per panel
+  Points middle;                    // of the bound vortices, where the velocity makes force
   std::vector<Points> normal_rate;  // per control: d normal / d deflection
   std::vector<int> parity;          // per control: 1 symmetric, -1 antisymmetric
   std::vector<int> mirror;          // per panel of the right half: its image
   int right = 0, center = 0;
-  std::vector<int> strip;          // per panel
-  Points strip_first, strip_last;  // per strip: ends of its trailing edge
+  std::vector<int> strip;  // per panel
+  // Per strip: ends of its trailing edge, and the point between them where its wash is taken.
+  Points strip_first, strip_last, strip_middle;
 
   int panels() const { return static_cast<int>(control.cols()); }
   int rows() const { return static_cast<int>(row_surface.size()); }
@@ -86,13 +88,12 @@ inline WindLattice along_the_wind(const Lattice& lattice, const Condition& at) {
   w.normal = w.to_wind * lattice.normal;
   const int n = lattice.panels();
   w.bound.resize(3, n);
-  w.arm.resize(3, n);
+  w.arm = turned(lattice.middle);
   w.surface.resize(static_cast<std::size_t>(n));
   for (int row = 0, panel = 0; row < lattice.rows(); ++row) {
     const std::size_t r = static_cast<std::size_t>(row);
     for (int v = lattice.row_start[r]; v + 1 < lattice.row_start[r + 1]; ++v, ++panel) {
       w.bound.col(panel) = w.vertices.col(v + 1) - w.vertices.col(v);
-      w.arm.col(panel) = 0.5 * (w.vertices.col(v + 1) + w.vertices.col(v));
       w.surface[static_cast<std::size_t>(panel)] = lattice.row_surface[r];
     }
   }

@@ -26,10 +26,11 @@ inline Trefftz trefftz(const Lattice& lattice, const Condition& at, const WindLa
   const auto trace = [&](const Points& p) -> Points {
     return wind.to_wind * (p.colwise() - at.point);
   };
-  const Points first = trace(lattice.strip_first), last = trace(lattice.strip_last);
+  const Points first = trace(lattice.strip_first), last = trace(lattice.strip_last),
+               middle = trace(lattice.strip_middle);
   MatrixXd through(strips, strips);  // normal wash times width, of unit circulations
   for (Eigen::Index i = 0; i < strips; ++i) {
-    const double y = 0.5 * (first(1, i) + last(1, i)), z = 0.5 * (first(2, i) + last(2, i));
+    const double y = middle(1, i), z = middle(2, i);
     const double dy = last(1, i) - first(1, i), dz = last(2, i) - first(2, i);
     const double close = 1e-12 * (dy * dy + dz * dz);
     for (Eigen::Index j = 0; j < strips; ++j) {
