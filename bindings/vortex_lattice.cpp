@@ -32,11 +32,12 @@ auto transposed(const M& m) {
   return out.numpy();
 }
 
-Result vortex_lattice(Matrix vertices, Integers row_start, Integers row_surface, Matrix control,
-                      Matrix middle, Matrix normal, Cube normal_rate, Vector parity,
-                      Integers mirror, int right, int center, Integers strip, Matrix strip_first,
-                      Matrix strip_last, Matrix strip_middle, double alpha, double beta,
-                      double mach, Vector rate, Vector point, Vector reference, double core) {
+Result vortex_lattice(Matrix vertices, Integers row_start, Integers row_surface, Matrix trailing,
+                      Integers row_trailing, Matrix control, Matrix middle, Matrix normal,
+                      Cube normal_rate, Vector parity, Integers mirror, int right, int center,
+                      Integers strip, Matrix strip_first, Matrix strip_last, Matrix strip_middle,
+                      double alpha, double beta, double mach, Vector rate, Vector point,
+                      Vector reference, double core) {
   Lattice a;
   const std::size_t n = control.shape(0), strips = strip_first.shape(0);
   if (n < 1 || n > static_cast<std::size_t>(kMaxPanels))
@@ -51,6 +52,13 @@ Result vortex_lattice(Matrix vertices, Integers row_start, Integers row_surface,
   if (a.row_start[0] != 0 || a.row_start[rows] != static_cast<int>(n + rows))
     throw nb::value_error("row_start: the rows must hold all vertices");
   a.row_surface = integers(row_surface, rows, static_cast<int>(rows), "row_surface");
+  a.trailing = points(trailing, trailing.shape(0), "trailing: expected (edges, 3)");
+  a.row_trailing =
+      integers(row_trailing, rows, static_cast<int>(trailing.shape(0)), "row_trailing");
+  for (std::size_t r = 0; r < rows; ++r)
+    if (a.row_trailing[r] + a.row_start[r + 1] - a.row_start[r] >
+        static_cast<int>(trailing.shape(0)))
+      throw nb::value_error("row_trailing: a row beyond the last edge");
   a.control = points(control, n, "control: expected (panels, 3)");
   a.middle = points(middle, n, "middle: expected (panels, 3)");
   a.normal = points(normal, n, "normal: expected (panels, 3)");
@@ -115,11 +123,12 @@ double factor_time(int n) {
 void bind_vortex_lattice(nb::module_& m) {
   m.attr("LATTICE_PANELS") = kMaxPanels;
   m.def("vortex_lattice", &vortex_lattice, nb::arg("vertices"), nb::arg("row_start"),
-        nb::arg("row_surface"), nb::arg("control"), nb::arg("middle"), nb::arg("normal"),
-        nb::arg("normal_rate"), nb::arg("parity"), nb::arg("mirror"), nb::arg("right"),
-        nb::arg("center"), nb::arg("strip"), nb::arg("strip_first"), nb::arg("strip_last"),
-        nb::arg("strip_middle"), nb::arg("alpha"), nb::arg("beta"), nb::arg("mach"),
-        nb::arg("rate"), nb::arg("point"), nb::arg("reference"), nb::arg("core"),
+        nb::arg("row_surface"), nb::arg("trailing"), nb::arg("row_trailing"), nb::arg("control"),
+        nb::arg("middle"), nb::arg("normal"), nb::arg("normal_rate"), nb::arg("parity"),
+        nb::arg("mirror"), nb::arg("right"), nb::arg("center"), nb::arg("strip"),
+        nb::arg("strip_first"), nb::arg("strip_last"), nb::arg("strip_middle"), nb::arg("alpha"),
+        nb::arg("beta"), nb::arg("mach"), nb::arg("rate"), nb::arg("point"), nb::arg("reference"),
+        nb::arg("core"),
         "Loads of a lattice and their derivatives to alpha, beta, phat, qhat, rhat and controls, "
         "body axes; see core/host/include/alula/host/vortex_lattice.hpp.");
   m.def("lattice_factor_time", &factor_time, nb::arg("n"),

@@ -12,7 +12,8 @@ using namespace alula::lattice;
 // fin of 1 row of 2 in the plane of symmetry with another. symmetric: use is made of it.
 Lattice aircraft(bool symmetric, double deflection = 0.0) {
   Lattice a;
-  std::vector<Vector3d> vertices, control, bound, wash, normal, rate, rate_fin, first, last;
+  std::vector<Vector3d> vertices, control, bound, wash, trailing, normal, rate, rate_fin, first,
+      last;
   std::vector<int> strip, image;
   int surface = 0, strips = 0;
   const auto half = [&](int rows, int spans, bool fin, double side) {
@@ -43,12 +44,14 @@ Lattice aircraft(bool symmetric, double deflection = 0.0) {
       }
       a.row_start.push_back(static_cast<int>(vertices.size()));
       a.row_surface.push_back(surface);
+      a.row_trailing.push_back(static_cast<int>(trailing.size()));
     }
     for (int i = 0; i < spans; ++i) {
       const int k = side > 0 ? i : spans - 1 - i, step = side > 0 ? 0 : 1;
       first.push_back(place(0.6, k + step)), last.push_back(place(0.6, k + 1 - step));
       wash.push_back(0.5 * (first.back() + last.back()));
     }
+    for (int i = 0; i <= spans; ++i) trailing.push_back(place(0.6, side > 0 ? i : spans - i));
     strips += spans;
   };
   half(2, 3, false, 1.0);
@@ -62,6 +65,7 @@ Lattice aircraft(bool symmetric, double deflection = 0.0) {
   a.vertices = points(vertices), a.control = points(control), a.normal = points(normal);
   a.normal_rate = {points(rate), points(rate_fin)};
   a.parity = {1, -1};
+  a.trailing = points(trailing);
   a.middle = points(bound), a.strip_middle = points(wash);
   a.strip = strip, a.strip_first = points(first), a.strip_last = points(last);
   a.right = symmetric ? 6 : 0, a.center = symmetric ? 2 : 14;
@@ -150,7 +154,9 @@ TEST(VortexLattice, HorseshoeByBiotAndSavart) {
   one.vertices.resize(3, 2);
   one.vertices.col(0) << 0.0, -0.5, 0.0;
   one.vertices.col(1) << -0.2, 0.7, 0.1;
-  one.row_start = {0, 2}, one.row_surface = {0};
+  one.row_start = {0, 2}, one.row_surface = {0}, one.row_trailing = {0};
+  one.trailing = one.vertices;
+  one.trailing.row(0).array() -= 0.6;
   one.control = one.normal = one.middle = point;
   Condition at;
   const WindLattice wind = along_the_wind(one, at);

@@ -26,7 +26,8 @@ class Panels:
     """A lattice as the core takes it, body axes, m; n panels in rows, k strips, c controls.
 
     vertices: (n + rows, 3), of the bound vortices, row by row; row_start: (rows + 1,); row_surface:
-    (rows,). control, middle (on the bound vortices), normal: (n, 3). normal_rate: (c, n, 3),
+    (rows,). trailing: (edges, 3), where legs leave the trailing edge; row_trailing: (rows,), that of
+    the row's first vertex. control, middle (on the bound vortices), normal: (n, 3). normal_rate: (c, n, 3),
     1/rad of each of `controls`; parity: (c,), 1 or -1 by symmetry. The first `right` panels have
     their images `mirror` at the end, the next `center` lie in the plane of symmetry; right = 0:
     symmetry is not used. strip: (n,); strip_first, strip_last: (k, 3), ends of the trailing edge;
@@ -43,6 +44,8 @@ class Panels:
     vertices: Array
     row_start: NDArray[np.int32]
     row_surface: NDArray[np.int32]
+    trailing: Array
+    row_trailing: NDArray[np.int32]
     control: Array
     middle: Array
     normal: Array
@@ -145,8 +148,8 @@ def _joined(
     sizes = [sum(h.control.shape[0] * h.control.shape[1] for _, h in g) for g in groups]
     count = sum(sizes)
     rate = np.zeros((len(controls), count, 3))
-    rows, row_surface, strip, mirror = [], [], [], []
-    panel = strips = 0
+    rows, row_surface, row_trailing, strip, mirror = [], [], [], [], []
+    panel = strips = edges = 0
     images = sizes[0] + sizes[1]
     for index, half in halves:
         m, s = half.control.shape[:2]
@@ -154,10 +157,11 @@ def _joined(
             rate[controls.index(name), panel : panel + m * s] = values.reshape(-1, 3)
         rows += [s + 1] * m
         row_surface += [index] * m
+        row_trailing += [edges] * m
         strip.append(np.tile(np.arange(strips, strips + s), m))
         if panel < sizes[0]:
             mirror.append(images + panel + np.arange(m * s).reshape(m, s)[:, ::-1].ravel())
-        panel, strips = panel + m * s, strips + s
+        panel, strips, edges = panel + m * s, strips + s, edges + s + 1
 
     def flat(arrays: list[Array]) -> Array:
         return np.ascontiguousarray(np.concatenate([a.reshape(-1, *a.shape[2:]) for a in arrays]))
@@ -172,6 +176,8 @@ def _joined(
         vertices=flat([h.vertices for _, h in halves]),
         row_start=np.concatenate([[0], np.cumsum(rows)]).astype(np.int32),
         row_surface=np.array(row_surface, dtype=np.int32),
+        trailing=np.concatenate([h.lines[-1] for _, h in halves]),
+        row_trailing=np.array(row_trailing, dtype=np.int32),
         control=flat([h.control for _, h in halves]),
         middle=flat([h.bound for _, h in halves]),
         normal=flat([h.normal for _, h in halves]),

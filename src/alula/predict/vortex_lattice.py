@@ -84,8 +84,9 @@ def vortex_lattice(
     said += _finer(mesh, lattice.mesh)
     said += wakes_near(lattice, _stream(alpha, beta), numbers["core"])
     found = compiled.vortex_lattice(
-        lattice.vertices, lattice.row_start, lattice.row_surface, lattice.control,
-        lattice.middle, lattice.normal, lattice.normal_rate, lattice.parity, lattice.mirror,
+        lattice.vertices, lattice.row_start, lattice.row_surface,
+        lattice.trailing, lattice.row_trailing, lattice.control, lattice.middle,
+        lattice.normal, lattice.normal_rate, lattice.parity, lattice.mirror,
         lattice.right, lattice.center, lattice.strip, lattice.strip_first, lattice.strip_last,
         lattice.strip_wash,
         alpha, beta, mach, np.zeros(3), point,

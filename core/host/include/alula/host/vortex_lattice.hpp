@@ -3,10 +3,12 @@
 // sideslip, rates and controls, from one factorization.
 //
 // Horseshoe vortices on the quarter line of each panel, no flow through it at three quarters;
-// trailing legs straight along the stream. Forces by Kutta and Joukowski on the bound vortices with
-// all velocity there. Katz and Plotkin, Low-Speed Aerodynamics, 2nd ed. (2001), Sec. 12.3; Drela,
-// Flight Vehicle Aerodynamics (2014), Ch. 6. Derivatives are those of the discrete equations,
-// A dG = -(dV.n + V.dn + (dA/ds) G), the turning of the trailing legs included.
+// legs along the surface to the trailing edge and on straight along the stream. Forces by Kutta and
+// Joukowski: on the bound vortices with all velocity there, on the legs' part on the surface with
+// the outer flow (what sideslip and yawing do to them; Queijo 1968, NASA TN D-4929). Katz and
+// Plotkin, Low-Speed Aerodynamics, 2nd ed. (2001), Sec. 12.3; Drela, Flight Vehicle Aerodynamics
+// (2014), Ch. 6. Derivatives are those of the discrete equations, A dG = -(dV.n + V.dn + (dA/ds)
+// G), the turning of the wake's legs included.
 #include "alula/host/vortex_lattice_panels.hpp"
 #include "alula/host/vortex_lattice_solve.hpp"
 #include "alula/host/vortex_lattice_trefftz.hpp"
@@ -70,24 +72,70 @@ inline Points three_rows(const MatrixXd& stacked, Eigen::Index column, Eigen::In
   return out;
 }
 
-// Forces of unit density and area (over half) on the solved panels, completed by their images, and
-// their sum in body axes about the reference point.
+// Force and moment about the reference point, one column per panel, wind axes.
+struct PanelLoads {
+  Points force, moment;
+
+  PanelLoads times(const VectorXd& circulation) const {
+    const auto by = circulation.head(force.cols()).asDiagonal();
+    return {force * by, moment * by};
+  }
+};
+
+// Loads of unit circulations in given flows: at the bound vortices, and at the middle of the legs
+// on the surface (vertex by vertex), where the flow is the outer one.
+struct UnitLoads {
+  const Lattice& lattice;
+  const WindLattice& wind;
+  Points leg, leg_arm;  // of each vertex: the leg to the trailing edge, and its middle
+
+  UnitLoads(const Lattice& of, const WindLattice& in)
+      : lattice(of), wind(in), leg(3, of.vertices.cols()), leg_arm(3, of.vertices.cols()) {
+    for (int row = 0; row < of.rows(); ++row) {
+      const std::size_t r = static_cast<std::size_t>(row);
+      for (int v = of.row_start[r]; v < of.row_start[r + 1]; ++v) {
+        const auto edge = in.trailing.col(of.row_trailing[r] + v - of.row_start[r]);
+        leg.col(v) = edge - in.vertices.col(v);
+        leg_arm.col(v) = 0.5 * (edge + in.vertices.col(v));
+      }
+    }
+    leg.row(0) *= in.B, leg_arm.row(0) *= in.B;
+  }
+
+  PanelLoads in(const Points& at_bound, const Points& at_leg) const {
+    const int solved = lattice.solved();
+    PanelLoads out{Points(3, solved), Points(3, solved)};
+    for (int row = 0, i = 0; i < solved; ++row) {
+      const std::size_t r = static_cast<std::size_t>(row);
+      for (int v = lattice.row_start[r]; v + 1 < lattice.row_start[r + 1]; ++v, ++i) {
+        const Vector3d bound = at_bound.col(i).cross(wind.bound.col(i).eval());
+        const Vector3d first = at_leg.col(v).cross(leg.col(v).eval());
+        const Vector3d last = at_leg.col(v + 1).cross(leg.col(v + 1).eval());
+        out.force.col(i) = bound + last - first;
+        out.moment.col(i) = Vector3d(wind.arm.col(i)).cross(bound) +
+                            Vector3d(leg_arm.col(v + 1)).cross(last) -
+                            Vector3d(leg_arm.col(v)).cross(first);
+      }
+    }
+    return out;
+  }
+};
+
+// Coefficients in body axes of the solved panels' loads (unit density and airspeed) and of their
+// images.
 inline Eigen::Matrix<double, 6, 1> total(const Lattice& lattice, const Condition& at,
-                                         const WindLattice& wind, const Points& force, int parity,
-                                         Points* all = nullptr) {
-  Vector3d F = Vector3d::Zero(), M = Vector3d::Zero();
-  const Matrix3d to_body = wind.to_wind.transpose();
-  const auto put = [&](Eigen::Index panel, const Vector3d& body) {
-    const Vector3d arm = to_body * wind.arm.col(panel);
-    F += body, M += arm.cross(body);
-    if (all) all->col(panel) = body;
-  };
-  for (Eigen::Index i = 0; i < force.cols(); ++i) {
-    Vector3d body = to_body * force.col(i) * (2.0 / at.S);
-    put(i, body);
-    if (i >= lattice.right) continue;
-    body *= parity, body[1] = -body[1];
-    put(lattice.mirror[static_cast<std::size_t>(i)], body);
+                                         const WindLattice& wind, const PanelLoads& loads,
+                                         int parity, Points* all = nullptr) {
+  const Matrix3d to_body = wind.to_wind.transpose() * (2.0 / at.S);
+  const Points force = to_body * loads.force, moment = to_body * loads.moment;
+  Vector3d F = force.rowwise().sum(), M = moment.rowwise().sum();
+  const Vector3d polar = parity * Vector3d(1, -1, 1), axial = -polar;
+  F += polar.cwiseProduct(force.leftCols(lattice.right).rowwise().sum());
+  M += axial.cwiseProduct(moment.leftCols(lattice.right).rowwise().sum());
+  if (all) {
+    all->leftCols(force.cols()) = force;
+    for (int i = 0; i < lattice.right; ++i)
+      all->col(lattice.mirror[static_cast<std::size_t>(i)]) = polar.cwiseProduct(force.col(i));
   }
   Eigen::Matrix<double, 6, 1> out;
   out << F, M[0] / at.b, M[1] / at.c, M[2] / at.b;
@@ -133,22 +181,20 @@ inline Loads solve(const Lattice& lattice, const Condition& at) {
   at_bound.add(turned(lattice, wind, wind.middle, solved, out.circulation), wind.cos_beta);
   const MatrixXd wash = induced(lattice, wind, wind.middle, solved, circulation);
   const Points flow = at_bound.flow + detail::three_rows(wash, 0, circulation.cols());
-  const auto force_by = [&](const Points& velocity, const VectorXd& strength) {
-    Points force(3, solved);
-    for (int i = 0; i < solved; ++i)
-      force.col(i) = strength[i] * velocity.col(i).cross(wind.bound.col(i).eval());
-    return force;
-  };
+  const detail::UnitLoads unit(lattice, wind);
+  const detail::Stream at_leg(wind, at, unit.leg_arm, columns);
+  const detail::PanelLoads steady_loads = unit.in(flow, at_leg.flow);
   out.force.resize(3, n);
   out.coefficients =
-      detail::total(lattice, at, wind, force_by(flow, out.circulation), steady, &out.force);
+      detail::total(lattice, at, wind, steady_loads.times(out.circulation), steady, &out.force);
   out.derivatives.resize(6, static_cast<Eigen::Index>(columns));
   for (std::size_t k = 0; k < columns; ++k) {
     const Eigen::Index column = static_cast<Eigen::Index>(k);
     const Points rate = at_bound.rate[k] + detail::three_rows(wash, column + 1, circulation.cols());
-    const Points force =
-        force_by(flow, circulation.col(column + 1)) + force_by(rate, out.circulation);
-    out.derivatives.col(column) = detail::total(lattice, at, wind, force, parity(k));
+    detail::PanelLoads loads = unit.in(rate, at_leg.rate[k]).times(out.circulation);
+    const detail::PanelLoads by = steady_loads.times(circulation.col(column + 1));
+    loads.force += by.force, loads.moment += by.moment;
+    out.derivatives.col(column) = detail::total(lattice, at, wind, loads, parity(k));
   }
   out.wake = trefftz(lattice, at, wind, circulation.leftCols(2));
   out.circulation_rates = circulation.rightCols(static_cast<Eigen::Index>(columns));

@@ -3,7 +3,8 @@
 //
 // Katz and Plotkin, Low-Speed Aerodynamics, 2nd ed. (2001), Sec. 2.12 and 12.1, with the bound
 // vortex in the form that is regular on its extension, (a x b)(|a| + |b|) / (|a||b|(|a||b| + a.b)).
-// A trailing leg costs one root and one division, a bound vortex one division.
+// A leg costs a root and a division, a bound vortex one division more; the part of the legs behind
+// the trailing edge is shared by all panels of a strip.
 #include <algorithm>
 #include <numbers>
 #include <vector>
@@ -33,9 +34,10 @@ struct Tile {
   }
 };
 
-// The points seen from a vertex, and what a leg from there induces: (0, -z, y) g.
+// The points seen from a place of the lattice, and what the leg from there on induces (times 4 pi,
+// scaled axes).
 struct FromVertex {
-  alignas(64) double x[kTile], y[kTile], z[kTile], r[kTile], fy[kTile], fz[kTile];
+  alignas(64) double x[kTile], y[kTile], z[kTile], r[kTile], fx[kTile], fy[kTile], fz[kTile];
 };
 
 // Leg from the origin along +x. D = y^2 + z^2 + core^2, r^2 = x^2 + D;
@@ -59,22 +61,41 @@ inline Pack core_of(const Tile& tile, int i, double surface, double core2) {
   return select(Pack::load(tile.surface + i) == Pack(surface), Pack(0.0), Pack(core2));
 }
 
-inline void see(const Tile& tile, const Eigen::Ref<const Vector3d>& vertex, double surface,
-                double core2, FromVertex& out) {
-  for (int i = 0; i < tile.padded; i += kLanes) {
-    const Pack x = Pack::load(tile.x + i) - Pack(vertex[0]);
-    const Pack y = Pack::load(tile.y + i) - Pack(vertex[1]);
-    const Pack z = Pack::load(tile.z + i) - Pack(vertex[2]);
-    const Leg leg(x, y * y + z * z + core_of(tile, i, surface, core2));
-    x.store(out.x + i), y.store(out.y + i), z.store(out.z + i), leg.r.store(out.r + i);
-    (-(z * leg.g)).store(out.fy + i), (y * leg.g).store(out.fz + i);
-  }
-}
-
 // Zero where a x b vanishes on the vortex itself: within 2e-5 of its length.
 inline Pack bound_factor(Pack p, Pack dot, Pack sum) {
   const auto off = p + dot > Pack(1e-9) * p;
   return select(off, sum / select(off, p * (p + dot), Pack(1.0)), Pack(0.0));
+}
+
+// From the trailing edge: a leg along the stream, (0, -z, y) g.
+inline void see_edge(const Tile& tile, const Eigen::Ref<const Vector3d>& edge, double surface,
+                     double core2, FromVertex& out) {
+  for (int i = 0; i < tile.padded; i += kLanes) {
+    const Pack x = Pack::load(tile.x + i) - Pack(edge[0]);
+    const Pack y = Pack::load(tile.y + i) - Pack(edge[1]);
+    const Pack z = Pack::load(tile.z + i) - Pack(edge[2]);
+    const Leg leg(x, y * y + z * z + core_of(tile, i, surface, core2));
+    x.store(out.x + i), y.store(out.y + i), z.store(out.z + i), leg.r.store(out.r + i);
+    Pack(0.0).store(out.fx + i), (-(z * leg.g)).store(out.fy + i), (y * leg.g).store(out.fz + i);
+  }
+}
+
+// From a bound vortex' end: along the surface to the trailing edge, then on.
+inline void see(const Tile& tile, const Eigen::Ref<const Vector3d>& vertex, const FromVertex& edge,
+                double surface, double core2, FromVertex& out) {
+  for (int i = 0; i < tile.padded; i += kLanes) {
+    const Pack x = Pack::load(tile.x + i) - Pack(vertex[0]);
+    const Pack y = Pack::load(tile.y + i) - Pack(vertex[1]);
+    const Pack z = Pack::load(tile.z + i) - Pack(vertex[2]);
+    const Pack r = sqrt(x * x + y * y + z * z + core_of(tile, i, surface, core2));
+    const Pack ex = Pack::load(edge.x + i), ey = Pack::load(edge.y + i),
+               ez = Pack::load(edge.z + i), er = Pack::load(edge.r + i);
+    const Pack h = bound_factor(r * er, x * ex + y * ey + z * ez, r + er);
+    x.store(out.x + i), y.store(out.y + i), z.store(out.z + i), r.store(out.r + i);
+    (h * (y * ez - z * ey)).store(out.fx + i);
+    (Pack::load(edge.fy + i) + h * (z * ex - x * ez)).store(out.fy + i);
+    (Pack::load(edge.fz + i) + h * (x * ey - y * ex)).store(out.fz + i);
+  }
 }
 
 // Bound vortex from a to b with its two legs; v: x, y, z, each `stride` apart.
@@ -88,7 +109,8 @@ inline void horseshoes(const FromVertex& a, const FromVertex& b, int padded, dou
     const Pack h = bound_factor(ra * rb, ax * bx + ay * by + az * bz, ra + rb);
     const Pack fy = Pack::load(b.fy + i) - Pack::load(a.fy + i);
     const Pack fz = Pack::load(b.fz + i) - Pack::load(a.fz + i);
-    (scale_x * h * (ay * bz - az * by)).store(v + i);
+    const Pack fx = Pack::load(b.fx + i) - Pack::load(a.fx + i);
+    (scale_x * (h * (ay * bz - az * by) + fx)).store(v + i);
     (scale * (h * (az * bx - ax * bz) + fy)).store(v + stride + i);
     (scale * (h * (ax * by - ay * bx) + fz)).store(v + 2 * stride + i);
   }
@@ -104,15 +126,25 @@ void induce(const Lattice& lattice, const WindLattice& wind, const Tile& tile, U
   FromVertex one, other;
   FromVertex *a = &one, *b = &other;
   Block block(3 * kTile, kBlock);
+  std::vector<FromVertex> edges;  // of the rows of one side of a surface
+  int edges_from = -1;
   for (int row = 0; row < lattice.rows(); ++row) {
     const std::size_t r = static_cast<std::size_t>(row);
     const double surface = lattice.row_surface[r];
     const int begin = lattice.row_start[r], end = lattice.row_start[r + 1];
-    see(tile, wind.vertices.col(begin), surface, wind.core2, *a);
+    if (edges_from != lattice.row_trailing[r]) {
+      edges_from = lattice.row_trailing[r];
+      edges.resize(static_cast<std::size_t>(end - begin));
+      for (int k = 0; k < end - begin; ++k)
+        see_edge(tile, wind.trailing.col(edges_from + k), surface, wind.core2,
+                 edges[static_cast<std::size_t>(k)]);
+    }
+    see(tile, wind.vertices.col(begin), edges[0], surface, wind.core2, *a);
     for (int v = begin + 1; v < end;) {
       const int first = v - 1 - row, count = std::min(kBlock, end - v);
       for (int k = 0; k < count; ++k, ++v) {
-        see(tile, wind.vertices.col(v), surface, wind.core2, *b);
+        see(tile, wind.vertices.col(v), edges[static_cast<std::size_t>(v - begin)], surface,
+            wind.core2, *b);
         horseshoes(*a, *b, tile.padded, wind.B, block.col(k).data(), kTile);
         std::swap(a, b);
       }

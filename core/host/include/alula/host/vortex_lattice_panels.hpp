@@ -17,14 +17,17 @@ using Eigen::Matrix3d, Eigen::MatrixXd, Eigen::Vector3d, Eigen::VectorXd;
 inline constexpr int kMaxPanels = 15000;
 
 // Horseshoes in rows: the bound vortices of a row join end to end, so neighbors share a trailing
-// leg. Row r has the vertices row_start[r] ... row_start[r + 1] - 1, one more than panels; panels
-// are counted along the rows. Circulation is positive from a vertex to the next.
+// leg: along the surface to the trailing edge, then along the stream. Row r has the vertices
+// row_start[r] ... row_start[r + 1] - 1, one more than panels; panels are counted along the rows.
+// Circulation is positive from a vertex to the next.
 //
 // Order of the panels: the right half, then what lies in the plane of symmetry, then the left half.
 // right = 0: no use is made of symmetry, all panels are in the second group.
 struct Lattice {
   Points vertices;
   std::vector<int> row_start;       // rows + 1
+  Points trailing;                  // where legs leave the trailing edge
+  std::vector<int> row_trailing;    // rows: trailing point of the row's first vertex, others follow
   std::vector<int> row_surface;     // rows: which surface, for the vortex core between surfaces
   Points control, normal;           // one per panel
   Points middle;                    // of the bound vortices, where the velocity makes force
@@ -55,7 +58,7 @@ struct Condition {
 struct WindLattice {
   Matrix3d to_wind;  // from body axes
   double B = 1.0, cos_beta = 1.0, core2 = 0.0;
-  Points vertices, control, middle;  // scaled; middle: of the bound vortices
+  Points vertices, trailing, control, middle;  // scaled; middle: of the bound vortices
   Points bound, arm;   // not scaled: bound vortex; its middle from the reference point
   Points control_arm;  // not scaled
   Points normal;
@@ -83,6 +86,7 @@ inline WindLattice along_the_wind(const Lattice& lattice, const Condition& at) {
     return w.to_wind * (p.colwise() - at.point);
   };
   w.vertices = turned(lattice.vertices);
+  w.trailing = turned(lattice.trailing);
   w.control = turned(lattice.control);
   w.control_arm = w.control;
   w.normal = w.to_wind * lattice.normal;
@@ -98,7 +102,7 @@ inline WindLattice along_the_wind(const Lattice& lattice, const Condition& at) {
     }
   }
   w.middle = w.arm;
-  for (Points* p : {&w.vertices, &w.control, &w.middle}) p->row(0) /= w.B;
+  for (Points* p : {&w.vertices, &w.trailing, &w.control, &w.middle}) p->row(0) /= w.B;
   return w;
 }
 

@@ -13,6 +13,13 @@ struct Turned {
   Points up, aside;
 };
 
+// Circulation of the leg from a row's vertex, positive downstream.
+inline double leg_circulation(const Lattice& lattice, const VectorXd& circulation, int row, int v) {
+  const std::size_t r = static_cast<std::size_t>(row);
+  const double before = v > lattice.row_start[r] ? circulation[v - 1 - row] : 0.0;
+  return before - (v + 1 < lattice.row_start[r + 1] ? circulation[v - row] : 0.0);
+}
+
 namespace detail {
 
 struct Turning {
@@ -95,23 +102,38 @@ inline Turned turned(const Lattice& lattice, const WindLattice& wind, const Poin
                      int count, const VectorXd& circulation) {
   Turned out{Points::Zero(3, count), Points::Zero(3, count)};
   if (circulation.isZero(0.0)) return out;
-  FromVertex one, other;
+  // Behind the trailing edge the legs of a strip's panels are one.
+  VectorXd wake = VectorXd::Zero(wind.trailing.cols());
+  std::vector<double> surface_of(static_cast<std::size_t>(wind.trailing.cols()));
+  VectorXd leg(wind.vertices.cols());
+  for (int row = 0; row < lattice.rows(); ++row) {
+    const std::size_t r = static_cast<std::size_t>(row);
+    for (int v = lattice.row_start[r]; v < lattice.row_start[r + 1]; ++v) {
+      const int edge = lattice.row_trailing[r] + v - lattice.row_start[r];
+      leg[v] = leg_circulation(lattice, circulation, row, v);
+      wake[edge] += leg[v];
+      surface_of[static_cast<std::size_t>(edge)] = lattice.row_surface[r];
+    }
+  }
+  FromVertex one, other, end;
   FromVertex *a = &one, *b = &other;
   for (int i = 0; i < count; i += kTile) {
     const Tile tile(points, wind.surface, i, std::min(i + kTile, count));
     detail::Turning sum{};
-    for (int row = 0; row < lattice.rows(); ++row) {
+    for (int k = 0; k < wake.size(); ++k)
+      detail::turn_legs(tile, wind.trailing.col(k), surface_of[static_cast<std::size_t>(k)],
+                        wind.core2, wind.B, wake[k], sum);
+    for (int row = 0; wind.B != 1.0 && row < lattice.rows(); ++row) {
       const std::size_t r = static_cast<std::size_t>(row);
       const double surface = lattice.row_surface[r];
-      const int begin = lattice.row_start[r], end = lattice.row_start[r + 1];
-      for (int v = begin; v < end; ++v) {
-        const double before = v > begin ? circulation[v - 1 - row] : 0.0;
-        const double after = v + 1 < end ? circulation[v - row] : 0.0;
-        detail::turn_legs(tile, wind.vertices.col(v), surface, wind.core2, wind.B, before - after,
-                          sum);
-        if (wind.B == 1.0) continue;
-        see(tile, wind.vertices.col(v), surface, wind.core2, *b);
-        if (v > begin) detail::turn_bounds(*a, *b, tile.padded, wind.B, before, sum);
+      const int begin = lattice.row_start[r];
+      for (int v = begin; v < lattice.row_start[r + 1]; ++v) {
+        const int edge = lattice.row_trailing[r] + v - begin;
+        see_edge(tile, wind.trailing.col(edge), surface, wind.core2, end);
+        see(tile, wind.vertices.col(v), end, surface, wind.core2, *b);
+        detail::turn_bounds(*b, end, tile.padded, wind.B, leg[v], sum);
+        if (v > begin)
+          detail::turn_bounds(*a, *b, tile.padded, wind.B, circulation[v - 1 - row], sum);
         std::swap(a, b);
       }
     }
