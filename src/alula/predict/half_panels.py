@@ -32,10 +32,9 @@ class Half(NamedTuple):
 def span_edges(
     surface: LiftingSurface, arc: Array, count: int, spacing: Spacing
 ) -> tuple[Array, Array]:
-    """Fractions of the span at the edges of its strips, from 0 to 1, and between them where the flow
-    is looked at. arc: fractions of the sections.
+    """Fractions of the span at the strips' edges, from 0 to 1, and between where flow is looked at.
 
-    Sections and ends of controls are edges; the strips between them keep the spacing's widths as
+    arc: fractions of the sections. Sections and ends of controls are edges; the strips between them keep the spacing's widths as
     nearly as their whole number allows. Cosine: finer to the tip of a mirrored surface, to both
     ends of another. Between edges that lie by a cosine the flow is looked at in the middle of its
     angle; where it is the middle of the strip, loads of fine strips swing. More strips than asked

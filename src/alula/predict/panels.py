@@ -25,17 +25,17 @@ _ON_PLANE = 1e-9  # of the span: as near to the plane of symmetry as rounding le
 class Panels:
     """A lattice as the core takes it, body axes, m; n panels in rows, k strips, c controls.
 
-    vertices: (n + rows, 3), of the bound vortices, row by row; row_start: (rows + 1,); row_surface:
-    (rows,). trailing: (edges, 3), where legs leave the trailing edge; row_trailing: (rows,), that of
-    the row's first vertex. control, middle (on the bound vortices), normal: (n, 3). normal_rate: (c, n, 3),
-    1/rad of each of `controls`; parity: (c,), 1 or -1 by symmetry. The first `right` panels have
-    their images `mirror` at the end, the next `center` lie in the plane of symmetry; right = 0:
-    symmetry is not used. strip: (n,); strip_first, strip_last: (k, 3), ends of the trailing edge;
-    strip_wash: (k, 3), on it between them;
-    strip_middle: (k, 3), at the quarter chord; strip_chord, strip_width: (k,), m, across the
-    flow; strip_control: (k, 3), mean control point; strip_surface: (k,). surfaces: names; mesh:
-    (chordwise, spanwise of the half) panels as made, by surface. lines: (m + 1, s + 1, 3) by half
-    of a surface, corners of its m rows of s panels.
+    vertices: (n + rows, 3), of the bound vortices, row by row; row_start: (rows + 1,);
+    row_surface: (rows,). trailing: (edges, 3), where legs leave the trailing edge; row_trailing:
+    (rows,), that of the row's first vertex. control, middle (on the bound vortices), normal:
+    (n, 3). normal_rate: (c, n, 3), 1/rad of each of `controls`; parity: (c,), 1 or -1 by symmetry.
+    The first `right` panels have their images `mirror` at the end, the next `center` lie in the
+    plane of symmetry; right = 0: symmetry is not used. strip: (n,); strip_first, strip_last:
+    (k, 3), ends of the trailing edge; strip_wash: (k, 3), on it between them; strip_middle: (k, 3),
+    at the quarter chord; strip_chord, strip_width: (k,), m, across the flow; strip_control: (k, 3),
+    mean control point; strip_surface: (k,). surfaces: names; mesh: (chordwise, spanwise of the
+    half) panels as made, by surface. lines: (m + 1, s + 1, 3) by half of a surface, corners of its
+    m rows of s panels.
     """
 
     surfaces: tuple[str, ...]
