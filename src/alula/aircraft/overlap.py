@@ -18,10 +18,8 @@ def overlap(one: Array, other: Array, near: float) -> bool:
     near: m, how far apart planes may be to count as one. Planes at an angle cross along a line,
     which is no shared area.
     """
-    if (
-        np.maximum(one.min(axis=0), other.min(axis=0)) - near
-        > np.minimum(one.max(axis=0), other.max(axis=0))
-    ).any():
+    extents = zip(one.T.tolist(), other.T.tolist(), strict=True)
+    if any(max(min(a), min(b)) - near > min(max(a), max(b)) for a, b in extents):
         return False  # boxes around them are apart
     normal, size = _normal(one)
     normal_b, size_b = _normal(other)

@@ -34,15 +34,17 @@ def span_edges(
 ) -> tuple[Array, Array]:
     """Fractions of the span at the strips' edges, from 0 to 1, and between where flow is looked at.
 
-    arc: fractions of the sections. Sections and ends of controls are edges; the strips between them keep the spacing's widths as
-    nearly as their whole number allows. Cosine: finer to the tip of a mirrored surface, to both
-    ends of another. Between edges that lie by a cosine the flow is looked at in the middle of its
-    angle; where it is the middle of the strip, loads of fine strips swing. More strips than asked
-    for where there are more pieces.
+    arc: fractions of the sections. Sections and ends of controls are edges; the strips between
+    them keep the spacing's widths as nearly as their whole number allows, and are more than asked
+    for where there are more pieces. Cosine: finer to the tip of a mirrored surface, to both ends of
+    another. Between edges that lie by a cosine the flow is looked at in the middle of its angle, as
+    in Multhopp's method; in the middle of the strip the loads of the tip would converge slowly.
     """
     ends = [x for c in surface.controls for x in (c.start, c.end)]
-    breaks = np.unique(np.concatenate([arc, ends, [0.0, 1.0]]))
-    breaks = breaks[np.concatenate([[True], np.diff(breaks) > _SAME])]
+    breaks = [0.0]
+    for place in sorted([*arc.tolist(), *ends, 1.0]):
+        if place - breaks[-1] > _SAME:
+            breaks.append(place)
     pieces = len(breaks) - 1
     count = max(count, pieces)
     ideal = np.arange(2 * count + 1) / (2 * count)
@@ -79,26 +81,22 @@ def half_panels(
     if spacing == "cosine":
         xi = 0.5 - 0.5 * np.cos(np.pi * xi)
 
-    def at(fraction: Array) -> Array:
-        """Points (len(fraction), s + 1, 3) at fractions of the chord."""
-        out = np.broadcast_to(front, (len(fraction), *front.shape)).copy()
-        out[:, :, 0] -= fraction[:, None] * chord
-        return out
-
+    # Lines along the span at fractions of the chord: edges of panels, bound vortices, control
+    # points, and the quarter chord; then the points of the strips on them.
     width = xi[1:] - xi[:-1]
-    lines, vertices, behind = at(xi), at(xi[:-1] + 0.25 * width), at(xi[:-1] + 0.75 * width)
-
-    def inside(points: Array) -> Array:
-        return points[:, :-1] * (1.0 - share) + points[:, 1:] * share
-
-    control, bound = inside(behind), inside(vertices)
+    fractions = np.concatenate([xi, xi[:-1] + 0.25 * width, xi[:-1] + 0.75 * width, [0.25]])
+    along = np.empty((len(fractions), *front.shape))
+    along[:] = front
+    along[:, :, 0] -= fractions[:, None] * chord
+    inside = along[:, :-1] * (1.0 - share) + along[:, 1:] * share
+    behind = along[2 * m + 1 : -1]
 
     # Chord direction turned about the span's direction across the flow, then the normal to it.
     line = front[1:] - front[:-1]
     up = np.zeros_like(line)
     up[:, 1], up[:, 2] = line[:, 2], -line[:, 1]
     up = _unit(up)
-    incidence = _incidence(surface, airfoils, arc, middle, xi[:-1] + 0.75 * width)
+    incidence = _incidence(surface, airfoils, arc, middle, fractions[2 * m + 1 : -1])
     aft = -np.sin(incidence)[..., None] * up
     aft[..., 0] = -np.cos(incidence)
     normal = _unit(cross(aft, behind[:, 1:] - behind[:, :-1]))
@@ -116,10 +114,16 @@ def half_panels(
         rate = weight[..., None] * cross(axis, normal)
         for name, gain in control_surface.gains.items():
             rates[name] = gain * rate + rates.get(name, 0.0)
-    quarter = inside(at(np.array([0.25])))[0]
-    mean = 0.5 * (chord[1:] + chord[:-1])
     return Half(
-        vertices, control, bound, normal, lines, rates, quarter, inside(lines[-1:])[0], mean
+        vertices=along[m + 1 : 2 * m + 1],
+        control=inside[2 * m + 1 : -1],
+        bound=inside[m + 1 : 2 * m + 1],
+        normal=normal,
+        lines=along[: m + 1],
+        rates=rates,
+        quarter=inside[-1],
+        wash=inside[m],
+        chord=0.5 * (chord[1:] + chord[:-1]),
     )
 
 
@@ -168,13 +172,17 @@ def _hinge(
 
     Right-handed rotation about them moves the trailing edge toward the given direction.
     """
-    hinge = np.interp(t, [control.start, control.end], control.hinge)
+    hinge, at = (
+        control.hinge[0]
+        if control.hinge[0] == control.hinge[1]
+        else np.interp(x, [control.start, control.end], control.hinge)
+        for x in (t, middle)
+    )
     line = front.copy()
     line[:, 0] -= hinge * chord
     axis = _unit(line[1:] - line[:-1])
     # Axis x aft is where the trailing edge goes.
     axis[toward[2] * axis[:, 1] < toward[1] * axis[:, 2]] *= -1.0
-    at = np.interp(middle, [control.start, control.end], control.hinge)
     inside = (middle > control.start) & (middle < control.end)
     behind = (xi[1:, None] - at) / (xi[1:] - xi[:-1])[:, None]
     return axis, np.minimum(np.maximum(behind, 0.0), 1.0) * inside
