@@ -126,7 +126,6 @@ class LatticeResult:
         mesh = ", ".join(f"{name} {m} x {s}" for name, (m, s) in self.panels.mesh.items())
         x, y, z = self.point
         conditions = {
-            "axes": "CD CY CL along stability axes; moments and rates along body axes",
             "alpha_deg": f"{np.degrees(self.alpha):.6g}",
             "beta_deg": f"{np.degrees(self.beta):.6g}",
             "mach": f"{self.mach:g}",
@@ -137,7 +136,7 @@ class LatticeResult:
         for name, angle in self.deflections.items():
             conditions[f"{name}_deg"] = f"{np.degrees(angle):.6g}"
         notes = tuple(str(m) for m in self.messages if m.level != "info")
-        return Derivatives("vortex_lattice", values=estimates, conditions=conditions, notes=notes)
+        return Derivatives("vortex lattice", estimates, conditions, notes, axes="model")
 
     def with_messages(self, messages: tuple[Message, ...]) -> LatticeResult:
         """The same with other messages."""
