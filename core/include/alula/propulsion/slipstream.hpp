@@ -11,11 +11,11 @@ namespace alula {
 // wing: w changes by -Omega_i y in the sense of the aircraft's own roll rate.
 template <class S>
 struct Slipstream {
-  S u1;       // through the disk
-  S U_i;      // far behind it
-  S Omega_1;  // of the air as it meets the blades
-  S Omega_i;  // far behind
-  S R_i;      // m, radius far behind
+  S u1;         // through the disk
+  S U_i;        // far behind it
+  S Omega_1;    // of the air as it meets the blades
+  S Omega_i;    // far behind
+  S R_i;        // m, radius far behind
   bool inside;  // false: no slipstream by this model (reverse flow, or the drag stops the air);
                 // the free stream is returned
 };
@@ -36,8 +36,8 @@ constexpr Slipstream<S> slipstream(const S& axial_speed, const S& thrust, const 
   if (!inside) return {u0, u0, zero, zero, S(radius), value_of(thrust) == T(0)};
   const S u2 = sqrt(square);
   const S u1 = T(0.5) * (u0 + u2);
-  const S Omega = (T(2) * sense / (pi * radius * radius * radius * radius)) * torque * u2 /
-                  (density * u1 * u1);
+  const S Omega =
+      (T(2) * sense / (pi * radius * radius * radius * radius)) * torque * u2 / (density * u1 * u1);
   return {u1, u2, T(0.5) * Omega, Omega, radius * sqrt(u1 / u2), true};
 }
 
