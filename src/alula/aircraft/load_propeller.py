@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from pydantic import ValidationError
@@ -22,7 +22,7 @@ class PropellerDescription:
     blades: Blades
     test: TestTable | None = None
     static_test: StaticTestTable | None = None
-    fit: FitTable = FitTable()
+    fit: FitTable = field(default_factory=FitTable)
     rpm: float | None = None
     density: float = 1.225
 

@@ -1,4 +1,4 @@
-"""Propellers from the files of others: QPROP's definition, UIUC's and APC's geometry, UIUC's tests."""
+"""Propellers from the files of others: QPROP's, UIUC's and APC's geometry, UIUC's tests."""
 
 from __future__ import annotations
 
@@ -114,7 +114,7 @@ def read_uiuc_geometry(path: Path, diameter: float | None = None, count: int = 2
 
 
 def read_apc(path: Path) -> Blades:
-    """Blade geometry of APC's performance files (.PE0): station and chord in inches, twist in deg."""
+    """Blade geometry of APC's performance files (.PE0): inches and deg."""
     text = _text(path)
     head = re.search(r"STATION\s+CHORD.*?TWIST", text)
     rows: list[list[float]] = []
@@ -172,9 +172,9 @@ def read_blades(path: Path, diameter: float | None = None, count: int = 2) -> Bl
 def assumed_polar() -> BladePolar:
     """A thin section of 4 to 5 % camber at low Reynolds number, where nothing else is known.
 
-    Of no lift at -4.5 deg, with nine tenths of thin-airfoil theory's slope; limits and drag of such
-    sections at a Reynolds number of 1e5, with a laminar layer's power of it. One degree in the angle
-    of no lift is some 7 % of a small propeller's static thrust.
+    Of no lift at -4.5 deg, with nine tenths of thin-airfoil theory's slope; limits and drag of
+    such sections at a Reynolds number of 1e5, with a laminar layer's power of it. One degree in the
+    angle of no lift is some 7 % of a small propeller's static thrust.
     """
     slope = 0.9 * 2.0 * np.pi
     return BladePolar(

@@ -1,4 +1,4 @@
-"""The tables of a propeller's blades, in the aircraft file's [geometry.blades] and propeller files."""
+"""Tables of a propeller: blades, polars, tests; in aircraft files and propeller files."""
 
 from __future__ import annotations
 

@@ -141,9 +141,11 @@ class _Work:
                 column.extend(more.tolist())
             runs += [path.stem] * (len(columns[0]) - len(runs))
         if runs:
+            alone = None if files else table  # stated errors are those of the file's own table
             self.test = propeller_test(
-                *columns, runs, se_CT=None if table is None or files else table.se_CT,
-                se_CP=None if table is None or files else table.se_CP, where=self.blades.name,
+                columns[0], columns[1], columns[2], runs,
+                se_CT=None if alone is None else alone.se_CT,
+                se_CP=None if alone is None else alone.se_CP, where=self.blades.name,
             )  # fmt: skip
             self.fit_below = d.fit.J_max if fit_below is None else fit_below
             fitted = self.test if self.fit_below is None else self.test.below(self.fit_below)

@@ -78,12 +78,18 @@ def blade_element_loads(
     V = np.ascontiguousarray(V, dtype=np.float64)
     omega = np.ascontiguousarray(omega, dtype=np.float64)
     out = np.zeros((len(V), 3))
-    core.blade_element_loads(
-        core_shape(blades), _polars(blades), V, omega, density, viscosity, sound, tip_loss,
-        hub_loss, swirl, _evenly(blades, rule), out,
-    )  # fmt: skip
+    shape, polars = core_shape(blades), _polars(blades)
+    rest = (density, viscosity, sound, tip_loss, hub_loss, swirl, _evenly(blades, rule))
+    core.blade_element_loads(shape, polars, V, omega, *rest, out)
     for v, w, row in zip(V, omega, out, strict=True):
         regime = REGIMES[int(row[2])]
+        if regime == "inside" and row[0] < 0.0:
+            # Behind the windmill the drag of stalled blades may ask for power again.
+            slower = np.zeros((40, 3))
+            core.blade_element_loads(
+                shape, polars, np.linspace(0.0, v, 40), np.full(40, w), *rest, slower
+            )
+            regime = "inside" if np.all(slower[:, 1] > 0.0) else "windmill"
         if regime != "inside":
             J = float(np.pi * v / (w * blades.radius)) if w > 0.0 else 0.0
             raise outside(regime, J, blades.name)

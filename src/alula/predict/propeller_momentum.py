@@ -1,4 +1,4 @@
-"""A propeller as a momentum disk with swirl and blades that stall from the hub (Pusztai 2018, 2.1)."""
+"""A propeller as a momentum disk with swirl and partial blade stall (Pusztai 2018, 2.1)."""
 
 from __future__ import annotations
 
@@ -139,7 +139,9 @@ def momentum_propeller(
 def windmill_J(blades: Blades, parameters: MomentumParameters | None = None) -> float:
     """The advance ratio at which the air begins to drive the shaft; 0 without a solution."""
     p = _parameters(blades, parameters)
-    return core.windmill_J(core_shape(blades, p.pitch), p.c_l_alpha, p.alpha_max, p.c_d_alpha)
+    shape = core_shape(blades, p.pitch)
+    last: float = core.windmill_J(shape, p.c_l_alpha, p.alpha_max, p.c_d_alpha)
+    return last
 
 
 def _parameters(blades: Blades, given: MomentumParameters | None) -> MomentumParameters:

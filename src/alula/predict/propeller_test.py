@@ -1,4 +1,4 @@
-"""Tests that a propeller is identified from: a table over J, or thrust and electric power at rest."""
+"""Tests that identify a propeller: a table over J, or thrust and electric power at rest."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class PropellerTest:
 
     def below(self, J_most: float) -> PropellerTest:
         """The values at J below `J_most`."""
-        keep = self.J < J_most
+        keep = np.less(self.J, J_most)
         run = tuple(name for name, k in zip(self.run, keep, strict=True) if k)
         return PropellerTest(
             frozen(self.J[keep]), frozen(self.CT[keep]), frozen(self.CP[keep]), run, self.se_CT,
@@ -87,9 +87,10 @@ def static_test(
     thrust: N, omega: rad/s, voltage at the motor: V, current: A, (k,) each. The coefficients'
     standard errors come from their scatter over the throttle settings.
     """
-    T, w, U, I = (np.asarray(x, dtype=np.float64) for x in (thrust, omega, voltage, current))
-    sizes = {len(np.atleast_1d(x)) for x in (T, w, U, I)}
-    if len(sizes) > 1 or not all(np.all(np.isfinite(x)) for x in (T, w, U, I)) or np.any(w <= 0):
+    given = [np.atleast_1d(np.asarray(x, float)) for x in (thrust, omega, voltage, current)]
+    T, w, U, A = given
+    sizes = {len(x) for x in given}
+    if len(sizes) > 1 or not all(np.all(np.isfinite(x)) for x in given) or np.any(w <= 0.0):
         raise refuse(
             "bad_static_test",
             where=where,
@@ -109,7 +110,7 @@ def static_test(
         )
     n = w / (2.0 * np.pi)
     CT = T / (density * n**2 * diameter**4)
-    CP = U * I * motor_efficiency / (density * n**3 * diameter**5)
+    CP = U * A * motor_efficiency / (density * n**3 * diameter**5)
     return propeller_test(
         np.zeros(len(T)), CT, CP, common_CP=motor_efficiency_se / motor_efficiency, where=where
     )

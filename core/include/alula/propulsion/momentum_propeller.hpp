@@ -105,8 +105,12 @@ DiskState<T> disk_of(const BladeShape<T>& blade, const BladeAerodynamics<T>& a, 
   const auto f = [&](T J1) { return disk_at(blade, a, J1).J - J; };
   T f_low = -J, step = T(0.02);
   for (int i = 0; i < 60; ++i) {
-    const T high = low + step, f_high = f(high);
+    const T high = low + step;
+    const DiskState<T> next = disk_at(blade, a, high);
+    const T f_high = next.J - J;
     if (!(f_high < T(0))) return disk_at(blade, a, bracketed_root(f, low, f_low, high, f_high));
+    // Behind the windmill the drag of stalled blades may ask for power again.
+    if (next.regime == PropellerRegime::windmill) break;
     low = high;
     f_low = f_high;
     step *= T(1.1);
