@@ -2,8 +2,8 @@
 
 Fitted: Pusztai's momentum disk on CT and CP of all runs and of the static test, J below 0.9, with
 the effective pitch free and with the nominal 7 in; UIUC's photographed geometry, whose angles do
-not enter (the model's blades are a helix). Not fitted: blade elements on APC's own geometry with the
-polar that Alula assumes where nothing is known. UIUC's photographed angles lie about 2 deg below
+not enter (the model's blades are a helix). Not fitted: blade elements on APC's own geometry with
+the polar that Alula assumes where nothing is known. UIUC's photographed angles lie about 2 deg below
 APC's at three quarters of the radius; with them the same solver gives too little thrust: said too.
 """
 
@@ -89,13 +89,14 @@ def check(quick: bool = False) -> tuple[str, bool]:
     holds = max(four.rms_CT, four.rms_CP) < MOST_RMS and bool(away < MOST_CT)
     holds &= min(three.rms_CT, three.rms_CP) > MOST_RMS  # the failure is shown, and is one
     p = {e.name: e for e in four.estimates}
+    stall = p["alpha_max"]
     return (
         f"momentum disk, four parameters, {len(four.test.J)} values at J < {J_FITTED}: rms "
         f"{100 * four.rms_CT:.1f} % of CT, {100 * four.rms_CP:.1f} % of CP; effective pitch "
         f"{p['pitch'].value / 0.0254:.2f} ± {p['pitch'].se / 0.0254:.2f} in, c_l_alpha "
         f"{p['c_l_alpha'].value:.2f} ± {p['c_l_alpha'].se:.2f}, c_d_alpha "
         f"{p['c_d_alpha'].value:.2f} ± {p['c_d_alpha'].se:.2f}, alpha_max "
-        f"{p['alpha_max'].verdict.replace('_', ' ')} ({p['alpha_max'].note or 'resolved'}); nominal "
+        f"{stall.verdict.replace('_', ' ')} ({stall.note or 'resolved'}); nominal "
         f"pitch, three parameters: {100 * three.rms_CT:.0f} and {100 * three.rms_CP:.0f} %; blade "
         f"elements, not fitted, APC's geometry, all {len(test.J)} values: CT within "
         f"{100 * away:.1f} % of the largest, CP {100 * away_CP:.1f} % ({windmill} values in the "

@@ -33,7 +33,7 @@ def test_exact_curves_give_the_parameters_back() -> None:
     assert fit.identified
     assert fit.parameters is not None
     for name in ("c_l_alpha", "alpha_max", "c_d_alpha", "pitch"):
-        # the fit's splines over J1 are good to 1e-6 of the largest value, the sensitivity is some 10
+        # the fit's splines over J1 are good to 1e-6 of the largest value
         assert getattr(fit.parameters, name) == pytest.approx(getattr(PARAMETERS, name), rel=1e-3)
     assert fit.rms_CT < 1e-5
 
