@@ -3,7 +3,7 @@
 Fitted: Pusztai's momentum disk on CT and CP of all runs and of the static test, J below 0.9, with
 the effective pitch free and with the nominal 7 in; UIUC's photographed geometry, whose angles do
 not enter (the model's blades are a helix). Not fitted: blade elements on APC's own geometry with
-the polar that Alula assumes where nothing is known. UIUC's photographed angles lie about 2 deg below
+the polar that Alula assumes where nothing is known. UIUC's photographed angles lie some 2 deg below
 APC's at three quarters of the radius; with them the same solver gives too little thrust: said too.
 """
 

@@ -319,3 +319,59 @@ class ManeuverFit:
 
     @property
     def axes(self) -> str: ...
+
+MAX_BLADE_STATIONS: int = 64
+
+class BladeShape:
+    """Blades by stations; lengths over the tip's radius."""
+
+    def __init__(self, count: int, radius: float, hub: float, helix: float, r: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], chord: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], pitch: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> None:
+        """
+        count: of blades; radius: m; hub: where they begin, over the radius; helix: geometric
+        pitch over the radius, 0: the stations' pitch (rad) counts; r, chord over the radius.
+        """
+
+    @property
+    def helix(self) -> float: ...
+
+def blade_integrals(blade: BladeShape, alpha_max: float, J1: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], out: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None:
+    """
+    Integrals of one blade at advance ratios of the disk: out (n, 18), the loads F_x, F_yV,
+    F_yQ, M_x, M_yV, M_yQ, each with its parts of stalled lift, attached lift and drag.
+    """
+
+def momentum_disk(blade: BladeShape, c_l_alpha: float, alpha_max: float, c_d_alpha: float, J: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], out: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None:
+    """
+    The momentum disk at advance ratios J = V/(n D): out (n, 10): J0, J1, w'/w, the six hub
+    coefficients, the regime (0 inside, 1 standing, 2 reverse, 3 windmill, 4 unsolved).
+    """
+
+def windmill_J(blade: BladeShape, c_l_alpha: float, alpha_max: float, c_d_alpha: float) -> float:
+    """
+    Advance ratio behind which the air drives the shaft; 0 without a solution.
+    """
+
+class MomentumTable:
+    """The momentum disk tabulated for flight."""
+
+    def __init__(self, blade: BladeShape, c_l_alpha: float, alpha_max: float, c_d_alpha: float, sense: float) -> None: ...
+
+    @property
+    def last(self) -> float:
+        """J at the windmill"""
+
+    def loads(self, omega: float, v: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], w: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], density: float) -> tuple[float, float, float, float, float, float, float, int]:
+        """
+        Force (3), moment (3), shaft torque and regime at the hub; see hub_loads.
+        """
+
+def blade_element_loads(blade: BladeShape, polars: Sequence[tuple[Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]]], axial_speed: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], omega: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], density: float, viscosity: float, sound: float, tip_loss: bool, hub_loss: bool, swirl: bool, at_stations: bool, out: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None:
+    """
+    Thrust N, shaft torque N m and regime (as momentum_disk) by blade elements: out (n, 3).
+    """
+
+def slipstream(axial_speed: float, thrust: float, torque: float, density: float, radius: float, sense: float) -> tuple[float, float, float, float, float, bool]:
+    """
+    Speeds through the disk and far behind it (m/s), turning there (rad/s, along the thrust),
+    radius far behind (m), whether the model holds.
+    """

@@ -124,11 +124,13 @@ def test_what_cannot_be_computed_is_refused() -> None:
 def test_polars_of_stations_and_tables() -> None:
     """One polar per station, all alike, is that polar; so is its table, to its own lines."""
     b = blades()
+    free = replace(b.polars[0], c_l_min=-9.0, c_l_max=9.0, mach_corrected=False)  # as a table
+    b = replace(b, polars=(free,))
     one = blade_element(b, 0.3, 5000.0)
     many = blade_element(replace(b, polars=b.polars * 6), 0.3, 5000.0)
     assert many.CT[0] == pytest.approx(one.CT[0], rel=1e-12)
     p = b.polars[0]
-    alpha = np.radians(np.linspace(-10.0, 8.5, 400))  # where the lift is not held
+    alpha = np.radians(np.linspace(-30.0, 30.0, 1200))
     c_l = p.c_l_0 + p.c_l_alpha * alpha
     c_d = p.c_d_0 + p.c_d_2_upper * (c_l - p.c_l_cd0) ** 2
     tabled = replace(p, table=(alpha, c_l, c_d))
