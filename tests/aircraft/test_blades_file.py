@@ -139,3 +139,14 @@ def test_other_files_are_refused(tmp_path: Path) -> None:
             load_propeller(path)
     with pytest.raises(BadInput, match="file_not_readable"):
         load_propeller(tmp_path / "none.def")
+
+
+def test_the_example_of_the_page_is_a_propeller_file(tmp_path: Path) -> None:
+    page = (Path(__file__).parents[2] / "docs" / "propeller_file.md").read_text()
+    path = tmp_path / "page.toml"
+    path.write_text(page.split("```toml\n")[1].split("```")[0])
+    found = load_propeller(path)
+    assert found.blades.name == "20x10"
+    assert found.blades.momentum is not None
+    assert found.static_test is not None
+    assert found.fit.J_max == 0.9

@@ -235,6 +235,7 @@ class _Work:
                 {
                     "name": name, "method": c.method, "windmill_J": last, "J": c.J.tolist(),
                     "CT": c.CT.tolist(), "CP": c.CP.tolist(), "eta": c.eta.tolist(),
+                    "notes": list(c.notes),
                 }
                 for name, (c, last) in self.curves.items()
             ],
@@ -275,6 +276,7 @@ class _Work:
                 lines.append(f"  No curves: {fit.status}.")
         for name, (c, last) in self.curves.items():
             lines.append(f"\n{name}: {c.method}; windmill beyond J = {last:.4g}")
+            lines += [f"  {text}" for text in c.notes]
             lines.append(f"{'J':>8}{'CT':>10}{'CP':>10}{'eta':>8}")
             lines += [
                 f"{j:>8.4g}{t:>10.5f}{p:>10.5f}{e:>8.3f}"

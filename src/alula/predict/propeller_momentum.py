@@ -20,6 +20,7 @@ from alula.predict.propeller_curves import (
 )
 
 METHOD = "momentum disk with swirl and partial stall (Pusztai 2018, 2.1)"
+NO_IDLE_DRAG = "sections without lift have no drag here: efficiency too high at high J"
 THRUST = np.pi**2 / 4.0  # rho w^2 R^4 over rho n^2 D^4
 POWER = np.pi**3 / 4.0  # 2 pi rho w^2 R^5 n over rho n^3 D^5
 
@@ -133,6 +134,7 @@ def momentum_propeller(
         frozen(values),
         frozen(THRUST * square * out[:, 3]),
         frozen(-POWER * square * out[:, 6]),
+        (NO_IDLE_DRAG,),
     )
 
 
