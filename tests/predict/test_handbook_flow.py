@@ -15,7 +15,6 @@ from alula.predict.profile_drag import (
     DragItem,
     WettedPart,
     body_form,
-    body_wetted,
     drag_of_items,
     friction,
     profile_drag,
@@ -113,12 +112,6 @@ def test_friction_of_plates() -> None:
     assert friction(1e7) == pytest.approx(0.00300, abs=5e-6)
     assert friction(1e5, laminar=1.0) == pytest.approx(0.0042, abs=5e-6)
     assert friction(1e7, mach=0.8) < friction(1e7)
-
-
-def test_body_wetted_beside_a_cylinder_with_cones() -> None:
-    """Torenbeek's form at fineness 6: between that of a cylinder and that of a double cone."""
-    cylinder, cone = np.pi * 6.0, np.pi * np.hypot(3.0, 0.5)
-    assert cone < body_wetted(6.0, 1.0) < cylinder
 
 
 def test_drag_areas_of_the_armhawk() -> None:

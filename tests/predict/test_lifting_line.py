@@ -72,13 +72,6 @@ def test_carried_lift() -> None:
     assert line.carried(base, line.eta**2) == pytest.approx(0.25 * line.lift(base), rel=EXACT)
 
 
-def test_center_of_elliptic_load() -> None:
-    line = elliptic()
-    base = line.load(np.ones_like(line.eta))
-    # 4/(3 pi) of the half span; the sum over 60 nodes on each side is a midpoint rule.
-    assert line.center(base) == pytest.approx(4.0 / (3.0 * np.pi), rel=1e-3)
-
-
 @pytest.mark.parametrize(
     ("wing", "section", "k", "e"),
     [

@@ -23,7 +23,9 @@ from verification.armhawk_surfaces import armhawk_surfaces
 from verification.sportstar_prediction import sportstar_prediction
 
 POINT = np.zeros(3)
-SPORTSTAR = Path(__file__).parents[2] / "aircraft" / "sportstar.toml"
+AIRCRAFT = Path(__file__).parents[2] / "aircraft"
+SPORTSTAR = AIRCRAFT / "sportstar.toml"
+SHAPED = [p for p in sorted(AIRCRAFT.glob("*.toml")) if "[[geometry.surfaces]]" in p.read_text()]
 SMALL = Flow(alpha=0.05)
 
 
@@ -195,6 +197,20 @@ def test_sportstar_says_what_it_stands_on() -> None:
     assert all(e.se >= 0.0 and np.isfinite(e.value) for e in found.values.values())
     assert all(e.source for e in found.values.values())
     assert "Datcom 4.4.1" in found.conditions["downwash gradient"]
+
+
+@pytest.mark.parametrize("path", SHAPED, ids=lambda path: path.stem)
+def test_every_ready_aircraft_with_a_shape(path: Path) -> None:
+    """Finite values with errors and sources, stable and damped, by all that the shape offers."""
+    aircraft = load_aircraft(path)
+    found = semi_empirical(aircraft, Flow(V=1.5 * (aircraft.envelope.V or (30.0, 0.0))[0]))
+    for name, e in found.values.items():
+        assert np.isfinite(e.value), name
+        assert e.se >= 0.0, name
+        assert e.source, name
+    for name in ("Cm_alpha", "Cm_q", "Cl_p", "Cn_r", "CY_beta"):
+        assert found.values[name].value < 0.0, name
+    assert found.values["Cn_beta"].value > 0.0
 
 
 def test_low_aspect_ratio_is_noted_with_larger_error() -> None:

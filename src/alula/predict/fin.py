@@ -14,7 +14,7 @@ from alula.predict.lift_slope import polhamus
 from alula.predict.surface_shape import SurfaceShape
 
 # The tailplane and the body close the fin's lower end: 1.55 times its own aspect ratio
-# (Raymer, Aircraft Design, ch. 16). An end plate that seals would double it.
+# (handbook form, as in Raymer, Aircraft Design, ch. 16). An end plate that seals would double it.
 END_PLATE, END_PLATE_SE = 1.55, 0.25
 
 

@@ -62,12 +62,6 @@ class LiftingLine:
         arm = x * np.sin(self.theta) * self._circulation(load)
         return float(2.0 * self.aspect * arm.sum() * step)
 
-    def center(self, load: Load) -> float:
-        """Center of the right half's lift, as a fraction of the half span."""
-        right = self.eta > 0.0
-        w = (self._circulation(load) * np.sin(self.theta))[right]
-        return float((w * self.eta[right]).sum() / w.sum())
-
     def yaw(self, load: Load, other: Load) -> float:
         """Yawing moment coefficient of induced drag that `other` adds to the wing with `load`."""
         g, h = self._circulation(load), self._circulation(other)
