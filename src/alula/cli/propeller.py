@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from math import isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -17,6 +16,7 @@ from alula.cli.contract import (
     ThreadsOption,
     writable,
 )
+from alula.cli.propeller_output import result_of, text_of
 
 if TYPE_CHECKING:
     from alula.aircraft.blades import Blades
@@ -81,21 +81,21 @@ def propeller(
         from alula.cli.condition import source_of
 
         described = load_propeller(file, diameter, blades)
-        work = _Work(described, _numbers(J), rpm or described.rpm)
+        work = Work(described, _numbers(J), rpm or described.rpm)
         work.fit_all(test or (), fit_below)
         work.compute()
         command.inputs = [source_of(p) for p in (file, *(test or ()))]
         command.messages = work.messages
         command.status = "ok" if work.identified else "not_identifiable"
-        command.result = work.result()
-        command.say(work.text())
+        command.result = result_of(work)
+        command.say(text_of(work))
         if plot is not None:
             _write(plot, work)
             command.say(f"\nPicture: {plot}")
 
 
 @dataclass
-class _Work:
+class Work:
     """From the description to fits and curves."""
 
     described: PropellerDescription
@@ -225,65 +225,6 @@ class _Work:
             return self.J
         return [float(x) for x in np.linspace(0.0, last * (1.0 - 1e-6), 21)]
 
-    def result(self) -> dict[str, Any]:
-        """The envelope's `result`: SI, rad."""
-        b = self.blades
-        return {
-            "name": b.name, "diameter": b.diameter, "blades": b.count, "rpm": self.rpm,
-            "source": b.source,
-            "models": [
-                {
-                    "name": name, "method": c.method, "windmill_J": last, "J": c.J.tolist(),
-                    "CT": c.CT.tolist(), "CP": c.CP.tolist(), "eta": c.eta.tolist(),
-                    "notes": list(c.notes),
-                }
-                for name, (c, last) in self.curves.items()
-            ],
-            "fits": [
-                {
-                    "name": name, "n": len(fit.test.J), "rms_CT": fit.rms_CT,
-                    "rms_CP": fit.rms_CP, "status": fit.status,
-                    "parameters": [
-                        {
-                            "name": e.name, "value": e.value, "unit": e.unit,
-                            "se": e.se if isfinite(e.se) else None, "verdict": e.verdict,
-                            "tied_to": [{"name": n, "weight": w} for n, w in e.tied_to],
-                            "note": e.note,
-                        }
-                        for e in fit.estimates
-                    ],
-                }
-                for name, fit in self.fits.items()
-            ],
-        }  # fmt: skip
-
-    def text(self) -> str:
-        """What the command prints."""
-        b = self.blades
-        lines = [f"{b.name}: {b.count} blades, diameter {b.diameter:.4g} m ({b.source})"]
-        for name, fit in self.fits.items():
-            lines.append(
-                f"\nFitted to the {name}, {len(fit.test.J)} values: rms {100 * fit.rms_CT:.3g} % "
-                f"of the largest CT, {100 * fit.rms_CP:.3g} % of the largest CP"
-            )
-            for e in fit.estimates:
-                se = f"± {e.se:.3g}" if isfinite(e.se) and e.verdict != "given" else ""
-                tied = ", tied to " + ", ".join(n for n, _ in e.tied_to) if e.tied_to else ""
-                verdict = e.verdict.replace("_", " ")
-                words = f"{verdict}{tied}" + (f": {e.note}" if e.note else "")
-                lines.append(f"  {e.name:<10}{e.value:>9.4g} {se:<9} {e.unit:<8} {words}")
-            if fit.parameters is None:
-                lines.append(f"  No curves: {fit.status}.")
-        for name, (c, last) in self.curves.items():
-            lines.append(f"\n{name}: {c.method}; windmill beyond J = {last:.4g}")
-            lines += [f"  {text}" for text in c.notes]
-            lines.append(f"{'J':>8}{'CT':>10}{'CP':>10}{'eta':>8}")
-            lines += [
-                f"{j:>8.4g}{t:>10.5f}{p:>10.5f}{e:>8.3f}"
-                for j, t, p, e in zip(c.J, c.CT, c.CP, c.eta, strict=True)
-            ]
-        return "\n".join(lines)
-
 
 def _numbers(text: str | None) -> list[float] | None:
     if text is None:
@@ -316,7 +257,7 @@ def _check_plot(plot: Path) -> None:
     writable(plot, "plot")
 
 
-def _write(path: Path, work: _Work) -> None:
+def _write(path: Path, work: Work) -> None:
     import io
 
     from alula.base.files import write_whole
