@@ -19,6 +19,7 @@ from alula.cli.linearize import linearize
 from alula.cli.modes import modes
 from alula.cli.new import new
 from alula.cli.plan import plan
+from alula.cli.propeller import propeller
 from alula.cli.schema import schema
 from alula.cli.trim import trim
 from alula.cli.validate import validate
@@ -41,6 +42,7 @@ COMMANDS = (
     linearize,
     modes,
     validate,
+    propeller,
     export,
     schema,
 )
