@@ -46,7 +46,7 @@ void evaluate(const AeroTable& bound, Vector values, Matrix variables, MatrixOut
   if (values.shape(0) != self.term_count) throw nb::value_error("values: one per term expected");
   if (variables.shape(1) != alula::kVariables || out.shape(1) != alula::kCoefficients ||
       out.shape(0) != variables.shape(0))
-    throw nb::value_error("expected variables (n, 13) and out (n, 6)");
+    throw nb::value_error("expected variables (n, 14) and out (n, 6)");
   double slots[alula::kMaxSlots];
   for (std::size_t i = 0; i < variables.shape(0); ++i) {
     for (std::size_t j = 0; j < alula::kVariables; ++j) slots[j] = variables(i, j);
@@ -72,8 +72,8 @@ void bind_aero(nb::module_& m) {
       .def("__init__", &build, nb::arg("steps"), nb::arg("terms"),
            nb::arg("tables") = std::vector<TableArgument>())
       .def("evaluate", &evaluate, nb::arg("values"), nb::arg("variables"), nb::arg("out"),
-           "Coefficients (n, 6) for variables (n, 13): 1 V alpha beta phat qhat rhat de da dr df\n"
-           "dt mach; values: one per term.")
+           "Coefficients (n, 6) for variables (n, 14): 1 V alpha beta phat qhat rhat de da dr df\n"
+           "dt mach wash; values: one per term.")
       .def_prop_ro("term_count", [](const AeroTable& t) { return int{t.table.term_count}; })
       .def_prop_ro("step_count", [](const AeroTable& t) { return int{t.table.step_count}; })
       .def_prop_ro("table_count", [](const AeroTable& t) { return t.lookups->views.size(); });

@@ -13,7 +13,8 @@
 
 namespace alula {
 
-// Base variables, the first slots. Rates are pb/2V, qc/2V, rb/2V; angles rad; V m/s.
+// Base variables, the first slots. Rates are pb/2V, qc/2V, rb/2V; angles rad; V m/s. Wash: what the
+// propeller's slipstream has more of axial speed than the free stream, over V.
 enum Variable : int {
   kOne,
   kV,
@@ -27,9 +28,10 @@ enum Variable : int {
   kDr,
   kDf,
   kDt,
-  kMach
+  kMach,
+  kWash
 };
-inline constexpr int kVariables = 13;
+inline constexpr int kVariables = 14;
 
 // Body axes: CX CY CZ Cl Cm Cn. Stability axes: CD in the place of CX, CL in the place of CZ.
 inline constexpr int kCoefficients = 6;
@@ -86,6 +88,18 @@ constexpr bool well_formed(const TermTable& table, int table_count = 0) {
       return false;
   }
   return true;
+}
+
+// Whether a base variable is used at all.
+constexpr bool uses(const TermTable& table, Variable variable) {
+  const auto is = [&](std::uint8_t slot) { return int{slot} == variable; };
+  for (int i = 0; i < table.step_count; ++i) {
+    const Step& step = table.steps[static_cast<unsigned>(i)];
+    if (is(step.a) || is(step.b) || is(step.c)) return true;
+  }
+  for (int k = 0; k < table.term_count; ++k)
+    if (is(table.terms[static_cast<unsigned>(k)].slot)) return true;
+  return false;
 }
 
 // One coefficient: the terms that belong to it, at slots that are filled as far as they need.

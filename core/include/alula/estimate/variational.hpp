@@ -133,6 +133,7 @@ inline void base_slots(const VariationalPlan<axes>& plan, const MotionState<L, M
   for (int i = 0; i < 5; ++i)
     if (plan.uses[kDe + i]) slots[kDe + i] = D(u[kInControls + i]);
   if (plan.uses[kMach]) slots[kMach] = D(u[kInSlowness] * s.V);
+  if (plan.uses[kWash]) slots[kWash] = D(0.0);  // a maneuver does not record it
 }
 
 // The directions as rows of slopes: a seed is added whole, since an element put into a register
