@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from alula.campaign import run_validation
+from alula.campaign.validate import run_validation
 from data import data
 
 REAL = Path(__file__).parents[2] / "examples" / "real"

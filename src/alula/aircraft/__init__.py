@@ -4,6 +4,16 @@ from alula.aircraft.actuators import Actuator
 from alula.aircraft.aircraft import Aircraft, Envelope
 from alula.aircraft.control_check import control_sign_check
 from alula.aircraft.control_signs import sign_factor
+from alula.aircraft.geometry import (
+    Airfoil,
+    Body,
+    ControlSurface,
+    CrossSection,
+    Geometry,
+    LiftingSurface,
+    Polar,
+    Section,
+)
 from alula.aircraft.load import aircraft_schema, load_aircraft
 from alula.aircraft.mass import ROUNDING, MassModel, MassProperties, check_inertia
 from alula.aircraft.persons import person_inertia
@@ -22,14 +32,22 @@ __all__ = [
     "ROUNDING",
     "Actuator",
     "Aircraft",
+    "Airfoil",
+    "Body",
+    "ControlSurface",
+    "CrossSection",
     "ElectricMotor",
     "EngineKind",
     "EngineModel",
     "Envelope",
+    "Geometry",
+    "LiftingSurface",
     "MassModel",
     "MassProperties",
     "PistonEngine",
+    "Polar",
     "Propeller",
+    "Section",
     "Tank",
     "Turbofan",
     "Weighing",

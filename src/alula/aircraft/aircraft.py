@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from alula.aircraft.actuators import Actuator
+from alula.aircraft.geometry import Geometry
 from alula.aircraft.mass import MassModel, MassProperties
 from alula.aircraft.propulsion import EngineModel
 from alula.base.arrays import Array
@@ -40,6 +41,7 @@ class Aircraft:
     assumed: keys of the file whose value was not measured. All positions are in body axes from
     the datum. actuators: by control, for those that have one. aero: absolute path of the default
     aerodynamic model's file, None where the aircraft file names none; not opened here.
+    geometry: the shape, None where the file has no [geometry].
     """
 
     name: str
@@ -60,6 +62,7 @@ class Aircraft:
     messages: tuple[Message, ...] = field(default=())
     actuators: Mapping[str, Actuator] = field(default_factory=dict)
     aero: str | None = None
+    geometry: Geometry | None = None
 
     def mass_properties(self, fuel_used: Array) -> MassProperties:
         """Mass (n,), CG (n, 3) and inertia (n, 3, 3) after burning `fuel_used` (n,) kg.

@@ -9,6 +9,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
+import numpy as np
+
 from alula.aircraft.blades import Blades
 from alula.base.arrays import Array
 
@@ -86,6 +88,21 @@ class LiftingSurface:
     mirror: bool
     controls: tuple[ControlSurface, ...] = ()
     panels: tuple[int, int] = (6, 12)
+
+    def arc(self) -> Array:
+        """Distance of each section from the first along the (half) span, seen from ahead, m."""
+        yz = np.array([s.position[1:] for s in self.sections])
+        steps = np.hypot(*np.diff(yz, axis=0).T)
+        return np.concatenate([[0.0], np.cumsum(steps)])
+
+    def at(self, fraction: float) -> tuple[Array, float, float]:
+        """Leading edge (3,), chord and twist at a fraction of the (half) span, interpolated."""
+        arc = self.arc()
+        where = fraction * arc[-1]
+        x, y, z = (np.interp(where, arc, [s.position[k] for s in self.sections]) for k in range(3))
+        chord = np.interp(where, arc, [s.chord for s in self.sections])
+        twist = np.interp(where, arc, [s.twist for s in self.sections])
+        return np.array([x, y, z]), float(chord), float(twist)
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,9 @@ from pydantic import ValidationError
 from alula.aircraft.aircraft import SENSOR_GROUPS, Aircraft, Envelope
 from alula.aircraft.control_signs import sign_factor
 from alula.aircraft.frames import rotation, to_body
+from alula.aircraft.geometry_check import check_geometry
 from alula.aircraft.load_engines import actuators, engine_messages, engine_models
+from alula.aircraft.load_geometry import geometry
 from alula.aircraft.load_mass import mass_model
 from alula.aircraft.schema import AircraftFile, Control
 from alula.base.arrays import frozen
@@ -50,6 +52,7 @@ def load_aircraft(path: str | Path) -> Aircraft:
         for n, c in file.controls.items()
         if c.limits_deg is not None or c.limits is not None
     }
+    shape = geometry(file.geometry, turn, path) if file.geometry else None
     return Aircraft(
         name=file.name,
         S=file.reference.S,
@@ -73,11 +76,13 @@ def load_aircraft(path: str | Path) -> Aircraft:
         path=str(path),
         sha256=sha256,
         aero=None if file.aero is None else expand(file.aero, path, "aero"),
+        geometry=shape,
         messages=(
             *(mass.messages if mass else ()),
             *_geometry(file, path),
             *_sensor_names(file, path),
             *engine_messages(engines, path),
+            *(check_geometry(shape, file, path) if shape else ()),
         ),
     )
 

@@ -7,6 +7,7 @@ from typing import Literal
 from pydantic import Field, model_validator
 
 from alula.aircraft.schema_engines import EngineTable
+from alula.aircraft.schema_geometry import GeometryTable
 from alula.aircraft.schema_mass import Mass
 from alula.aircraft.schema_table import (
     NotNegative,
@@ -102,3 +103,4 @@ class AircraftFile(Table):
     controls: dict[str, Control] = Field(default_factory=dict)
     actuators: dict[Surface, ActuatorTable] = Field(default_factory=dict)
     envelope: EnvelopeTable = EnvelopeTable()
+    geometry: GeometryTable | None = None

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING
 
 from alula.flight import Flight, Maneuver
 from alula.identify import CoefficientData
 from alula.model import AeroModel
-from alula.validate.result import Seen
+
+if TYPE_CHECKING:
+    from alula.validate.result import Seen
 
 LEARNED = "learned from"  # key of a model's provenance
 _WINDOW = re.compile(r"\[([0-9a-f]{12}), (\S+) to (\S+) s\]")

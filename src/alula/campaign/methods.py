@@ -20,7 +20,6 @@ from alula.identify.measured_maneuver import MeasuredManeuver
 from alula.identify.merge import merged
 from alula.identify.output_error import identify_output_error
 from alula.identify.output_error_problem import STATE_SETS, Setting
-from alula.identify.quality import se_words
 from alula.identify.recursive import forgetting_of
 from alula.identify.recursive_equation_error import identify_recursive
 from alula.identify.regression_choice import OPTIONS as REGRESSION
@@ -117,10 +116,9 @@ def _equation_error(task: IdentifyTask) -> Identification:
 
 def _recursive(task: IdentifyTask) -> Identification:
     own = {k: v for k, v in task.options.items() if k in ("common_constant", "scales")}
-    result = identify_recursive(
+    return identify_recursive(
         task.data, task.models, forgetting=forgetting_of(task.options), **own, truth=task.truth
     )
-    return replace(result, uncertainty=se_words("coloured residuals", task.data))
 
 
 def _frequency(task: IdentifyTask) -> Identification:
@@ -128,8 +126,7 @@ def _frequency(task: IdentifyTask) -> Identification:
     if "band_hz" in options:
         options["band_hz"] = tuple(options["band_hz"])
     _one_of("detrend", options.get("detrend", "line"), ("ends", "mean", "line", "none"))
-    result = identify_frequency_regression(task.data, task.models, **options, truth=task.truth)
-    return replace(result, uncertainty=se_words("ordinates of unequal variance", task.data))
+    return identify_frequency_regression(task.data, task.models, **options, truth=task.truth)
 
 
 # Which readings tell of which motion, where the project does not choose.

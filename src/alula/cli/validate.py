@@ -19,7 +19,7 @@ from alula.cli.contract import (
 )
 
 if TYPE_CHECKING:
-    from alula.campaign import ValidationJob
+    from alula.campaign.validate import ValidationJob
     from alula.validate import Evidence, Flown
 
 
@@ -70,7 +70,7 @@ def validate(
     with command.run():
         if report is not None:
             writable(report, "report")
-        from alula.campaign import run_validation
+        from alula.campaign.validate import run_validation
 
         done = run_validation(
             str(project),
@@ -220,7 +220,7 @@ def _write_report(done: ValidationJob, path: Path, command: Command) -> None:
     from datetime import UTC, datetime
 
     from alula.base.files import write_whole
-    from alula.campaign import report_of_validation
+    from alula.campaign.validate import report_of_validation
     from alula.report import render
 
     command.progress("writing the report")

@@ -20,6 +20,7 @@ from scipy import special
 from alula.base.arrays import Array, frozen
 from alula.base.messages import note, refuse
 from alula.identify.coefficients import CoefficientData
+from alula.identify.control_sign import contradicted, signs_checked
 from alula.identify.quality import joint_covariance, se_words, status
 from alula.identify.regression import Regression, Weighting, regress
 from alula.identify.result import Identification, Parameter
@@ -186,13 +187,14 @@ def bootstrapped(
                 do="Nothing; set block_s in [identify.options] to choose another length.",
             )
         )
+    judged, turned = signs_checked(parameters)
     return replace(
         result,
         method=f"{result.method}, block bootstrap",
-        parameters=tuple(parameters),
-        covariance=frozen(joint_covariance(parts, changes, parameters)),
-        status=status(parameters),
-        messages=(*result.messages, *said),
+        parameters=judged,
+        covariance=frozen(joint_covariance(parts, changes, judged)),
+        status=status(judged) + contradicted(turned),
+        messages=tuple(dict.fromkeys((*result.messages, *said, *turned))),
         uncertainty=se_words("block bootstrap of the residuals", data),
     )
 

@@ -46,3 +46,8 @@ def signs_checked(
         for c in turned
     )
     return checked, said
+
+
+def contradicted(turned: Sequence[Message]) -> str:
+    """What a status says of such warnings; '' where there is none."""
+    return "".join(f"; sign contradicted: {m.where}" for m in turned)

@@ -1,36 +1,21 @@
 """Equation error: regress each aerodynamic coefficient on motion and controls.
 
 Dittrich 2016, Eq. (3.46) to (3.48); van den Hoek 2017, Eq. (28) to (31). Error bars: coloured
-residuals (coloured.py), and for each source of uncertainty outside the regression (reconstruction,
-thrust) the change of the estimate when that source is one standard deviation off, squared and
-added.
+residuals (coloured.py), and what lies outside of the regression (by_coefficient.py).
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 
-import numpy as np
-
-from alula.base.arrays import Array
-from alula.base.messages import Message, refuse
+from alula.base.messages import refuse
+from alula.identify.by_coefficient import Estimate, identify_each
 from alula.identify.coefficients import CoefficientData
-from alula.identify.diagnostics import diagnose
-from alula.identify.quality import (
-    joint_covariance,
-    predictions,
-    quality,
-    r_squared,
-    se_words,
-    status,
-)
+from alula.identify.quality import r_squared
 from alula.identify.regression import Weighting, regress
 from alula.identify.regression_choice import Kind, RegressionChoice
-from alula.identify.result import Fit, Identification, Parameter, Series
-from alula.identify.task import LONGITUDINAL, MOMENTS, CoefficientTask, serving, uneven
-from alula.identify.verdict import assess
-from alula.model import reference_scales
+from alula.identify.result import Identification
+from alula.identify.task import LONGITUDINAL, MOMENTS, CoefficientTask
 
 METHODS: Mapping[Kind, str] = {
     "ordinary": "equation error",
@@ -66,14 +51,6 @@ def identify_equation_error(
     itself. Raises BadInput for a coefficient that the data do not have, a formula that cannot be
     read, no maneuver to learn from, or no more samples than parameters.
     """
-    if not models:
-        raise refuse(
-            "no_model",
-            where="models",
-            expected="a formula for at least one coefficient",
-            found="none",
-            do='State one, e.g. Cm = "1 + alpha + qhat + de".',
-        )
     if weighting not in ("residual", "equal"):
         raise refuse(
             "unknown_option",
@@ -83,49 +60,22 @@ def identify_equation_error(
             do="Weight maneuvers by their residual variance, or all the same.",
         )
     choice = RegressionChoice(regression) if isinstance(regression, str) else regression
-    fits: dict[str, Fit] = {}
-    parameters: list[Parameter] = []
-    series: list[Series] = []
-    messages: list[Message] = [m for item in data for m in (*item.messages, *uneven(item))]
-    parts: list[Array] = []
-    changes: list[dict[str, Array]] = []
-    for coefficient, formula in models.items():
-        maneuvers = serving(data, coefficient)
-        learn = [item for item in maneuvers if not item.maneuver.held_out]
-        formula, structure, said = choice.select(
+
+    def estimate(coefficient: str, formula: str, learn: list[CoefficientData]) -> Estimate:
+        formula, structure, chosen = choice.select(
             coefficient, formula, learn, common_constant, weighting
         )
-        messages += said
         task = CoefficientTask(coefficient, formula, tuple(learn), common_constant)
         fit, said = choice.fit(
             coefficient, regress(task.names, task.blocks(None), weighting), task.free
         )
-        change = {
-            source: fit.refit(task.blocks(source)) - fit.solution.value
-            for source in dict.fromkeys(p.source for item in learn for p in item.perturbed)
-        }
-        added = sum((np.outer(d, d) for d in change.values()), np.zeros((len(task.names),) * 2))
-        enough = {**reference_scales(coefficient, formula), **(scales or {})}
-        assessed, remarks = assess(coefficient, fit, added, enough, truth or {})
-        parameters += assessed
-        messages += remarks
-        parts.append(fit.coloured.covariance)
-        changes.append(change)
-        shown = predictions(task, fit, maneuvers)
-        series += shown
-        tests, warned = diagnose(task, fit)
-        messages += [*said, *warned]
-        fits[coefficient] = replace(
-            quality(task, fit, shown), diagnostics=tests, structure=structure
+        return Estimate(
+            task=task,
+            fit=fit,
+            off=lambda source: fit.refit(task.blocks(source)),
+            structure=structure,
+            messages=(*chosen, *said),
         )
-    return Identification(
-        method=METHODS[choice.regression],
-        parameters=tuple(parameters),
-        fits=fits,
-        series=tuple(series),
-        covariance=joint_covariance(parts, changes, parameters),
-        status=status(parameters),
-        messages=tuple(messages),
-        labels={k: v for item in data for k, v in (item.labels or {}).items() if k in models},
-        uncertainty=se_words("coloured residuals", data),
-    )
+
+    method = METHODS[choice.regression]
+    return identify_each(method, data, models, estimate, scales=scales, truth=truth)

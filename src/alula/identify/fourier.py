@@ -12,7 +12,6 @@ from __future__ import annotations
 from typing import Literal
 
 import numpy as np
-from scipy.signal import czt
 
 from alula.base.arrays import Array
 from alula.base.messages import refuse
@@ -93,6 +92,8 @@ def _sums(x: Array, theta: Array) -> np.ndarray:
     """sum_m x_m exp(-j theta m), (m, k): by chirp z where frequencies are evenly spaced."""
     steps = np.diff(theta)
     if len(theta) > 8 and np.allclose(steps, steps[0], rtol=1e-9, atol=1e-15):
+        from scipy.signal import czt  # slow to import, for this branch only
+
         out: np.ndarray = czt(
             x, len(theta), w=np.exp(-1j * steps[0]), a=np.exp(1j * theta[0]), axis=0
         )

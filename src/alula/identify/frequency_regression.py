@@ -17,18 +17,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from alula.base.arrays import Array
 from alula.base.messages import Message, note, refuse
+from alula.identify.by_coefficient import Estimate, InTime, identify_each
 from alula.identify.coefficients import CoefficientData
 from alula.identify.fourier import Detrend, detrended, harmonics
-from alula.identify.quality import joint_covariance, predictions, quality, status
 from alula.identify.regression import Block, Regression, Weighting, regress
-from alula.identify.regressor_noise import warn_of_bias
-from alula.identify.result import Fit, Identification, Parameter, Series
+from alula.identify.result import Identification
 from alula.identify.sandwich import sandwich
-from alula.identify.task import CoefficientTask, serving, uneven
-from alula.identify.verdict import assess
-from alula.model import reference_scales
+from alula.identify.task import CoefficientTask
 
 ENERGY = 0.99  # share of the regressors' energy that the band holds where none is given
 SLOWEST = 3  # ordinates whose mean power a constant's error bar takes
@@ -50,14 +46,6 @@ def identify_frequency_regression(
     lowest on what holds 99 % of the regressors' energy, and says so. Raises BadInput as equation
     error does, and where the band holds too few frequencies.
     """
-    if not models:
-        raise refuse(
-            "no_model",
-            where="models",
-            expected="a formula for at least one coefficient",
-            found="none",
-            do='State one, e.g. Cm = "1 + alpha + qhat + de".',
-        )
     if band_hz is not None and not 0.0 <= band_hz[0] < band_hz[1] < np.inf:
         raise refuse(
             "bad_option",
@@ -66,64 +54,36 @@ def identify_frequency_regression(
             found=repr(band_hz),
             do='Write band_hz = [0.1, 2.0], or leave it out.',
         )  # fmt: skip
-    fits: dict[str, Fit] = {}
-    parameters: list[Parameter] = []
-    series: list[Series] = []
-    messages: list[Message] = [m for item in data for m in (*item.messages, *uneven(item))]
-    parts: list[Array] = []
-    changes: list[dict[str, Array]] = []
-    for coefficient, formula in models.items():
-        maneuvers = serving(data, coefficient)
-        learn = [item for item in maneuvers if not item.maneuver.held_out]
+
+    def estimate(coefficient: str, formula: str, learn: list[CoefficientData]) -> Estimate:
         task = CoefficientTask(coefficient, formula, tuple(learn), common=False)
         times = task.blocks(None)
         bands = [band_hz or _band(item, b, detrend) for item, b in zip(learn, times, strict=True)]
+        constant = [n in task.free for n in task.names]
 
-        def transformed(
-            blocks: Sequence[Block],
-            task: CoefficientTask = task,
-            learn: Sequence[CoefficientData] = learn,
-            bands: Sequence[tuple[float, float]] = bands,
-        ) -> list[Block]:
+        def transformed(blocks: Sequence[Block]) -> list[Block]:
             return [
-                _transform(item, block, band, detrend, [n in task.free for n in task.names])
+                _transform(item, block, band, detrend, constant)
                 for item, block, band in zip(learn, blocks, bands, strict=True)
             ]
 
         fit = _with_spectrum(regress(task.names, transformed(times), weighting))
-        change = {
-            source: fit.refit(transformed(task.blocks(source))) - fit.solution.value
-            for source in dict.fromkeys(p.source for item in learn for p in item.perturbed)
-        }
-        added = sum((np.outer(d, d) for d in change.values()), np.zeros((len(task.names),) * 2))
-        enough = {**reference_scales(coefficient, formula), **(scales or {})}
-        assessed, remarks = assess(coefficient, fit, added, enough, truth or {})
-        parameters += assessed
-        messages += [m for m in remarks if m.code != "noisy_regressor"]
         in_time = _in_time(fit, times)
-        if all(p.verdict != "not_identifiable" for p in assessed):
-            messages += warn_of_bias(
-                coefficient, _band_share(in_time), np.array([p.se for p in assessed])
-            )
-        messages += [
-            _said(coefficient, item, band, len(block.measured))
-            for item, band, block in zip(learn, bands, fit.blocks, strict=True)
-        ]
-        parts.append(fit.coloured.covariance)
-        changes.append(change)
-        shown = predictions(task, in_time, maneuvers)
-        series += shown
-        fits[coefficient] = quality(task, in_time, shown)
-    return Identification(
-        method="frequency-domain regression",
-        parameters=tuple(parameters),
-        fits=fits,
-        series=tuple(series),
-        covariance=joint_covariance(parts, changes, parameters),
-        status=status(parameters),
-        messages=tuple(messages),
-        labels={k: v for item in data for k, v in (item.labels or {}).items() if k in models},
-    )
+        return Estimate(
+            task=task,
+            fit=fit,
+            off=lambda source: fit.refit(transformed(task.blocks(source))),
+            in_time=InTime(in_time, _band_share(in_time)),
+            messages=tuple(
+                _said(coefficient, item, band, len(block.measured))
+                for item, band, block in zip(learn, bands, fit.blocks, strict=True)
+            ),
+        )
+
+    return identify_each(
+        "frequency-domain regression", data, models, estimate,
+        residuals="ordinates of unequal variance", scales=scales, truth=truth,
+    )  # fmt: skip
 
 
 def _transform(

@@ -18,7 +18,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import get_window
 
 from alula.base.arrays import Array, frozen
 from alula.base.messages import BadInput, refuse
@@ -91,7 +90,7 @@ def frequency_responses(
             found=f"{len(starts)} of {size} samples in a record of {n}",
             do="Take a longer record or a shorter segment_s.",
         )
-    window = get_window("hann", size)
+    window = 0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(size) / size)  # Hann
     pieces = np.stack([signals[s : s + size] - signals[s : s + size].mean(axis=0) for s in starts])
     spectra = np.fft.rfft(pieces * window[:, None], axis=1)
     f: Array = np.asarray(np.fft.rfftfreq(size, dt), dtype=np.float64)

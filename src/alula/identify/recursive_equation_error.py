@@ -14,13 +14,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from alula.base.arrays import Array, frozen
+from alula.base.arrays import frozen
 from alula.base.coloured import Coloured, coloured_covariance
-from alula.base.messages import Message, refuse
+from alula.base.messages import refuse
 from alula.core import core
+from alula.identify.by_coefficient import Estimate, identify_each
 from alula.identify.coefficients import CoefficientData
-from alula.identify.diagnostics import diagnose
-from alula.identify.quality import joint_covariance, predictions, quality, status
 from alula.identify.recursive import (
     NOTHING_FORGOTTEN,
     Forgetting,
@@ -30,10 +29,8 @@ from alula.identify.recursive import (
     sample_weights,
 )
 from alula.identify.regression import Block, Regression, regress
-from alula.identify.result import Fit, History, Identification, Parameter, Series
-from alula.identify.task import CoefficientTask, serving, uneven
-from alula.identify.verdict import assess
-from alula.model import reference_scales
+from alula.identify.result import History, Identification
+from alula.identify.task import CoefficientTask
 
 
 def identify_recursive(
@@ -51,55 +48,21 @@ def identify_recursive(
     `identify_equation_error`; maneuvers count alike. `histories` of the result holds the estimates
     over time, `parameters` the last ones.
     """
-    if not models:
-        raise refuse(
-            "no_model",
-            where="models",
-            expected="a formula for at least one coefficient",
-            found="none",
-            do='State one, e.g. Cm = "1 + alpha + qhat + de".',
-        )
-    fits: dict[str, Fit] = {}
-    parameters: list[Parameter] = []
-    series: list[Series] = []
-    histories: list[History] = []
-    messages: list[Message] = [m for item in data for m in (*item.messages, *uneven(item))]
-    parts: list[Array] = []
-    changes: list[dict[str, Array]] = []
-    for coefficient, formula in models.items():
-        maneuvers = serving(data, coefficient)
-        learn = [item for item in maneuvers if not item.maneuver.held_out]
+
+    def estimate(coefficient: str, formula: str, learn: list[CoefficientData]) -> Estimate:
         task = CoefficientTask(coefficient, formula, tuple(learn), common_constant)
         _check_size(coefficient, task.names)
         blocks = task.blocks(None)
         run = _run(blocks, forgetting)
-        fit = _last(task.names, blocks, run)
-        change = {
-            source: _run(task.blocks(source), forgetting).value[-1] - run.value[-1]
-            for source in dict.fromkeys(p.source for item in learn for p in item.perturbed)
-        }
-        added = sum((np.outer(d, d) for d in change.values()), np.zeros((len(task.names),) * 2))
-        enough = {**reference_scales(coefficient, formula), **(scales or {})}
-        assessed, remarks = assess(coefficient, fit, added, enough, truth or {})
-        tests, warned = diagnose(task, fit)
-        parameters += assessed
-        messages += [*remarks, *warned]
-        parts.append(fit.coloured.covariance)
-        changes.append(change)
-        shown = predictions(task, fit, maneuvers)
-        series += shown
-        fits[coefficient] = replace(quality(task, fit, shown), diagnostics=tests)
-        histories += _histories(task, run)
-    return Identification(
-        method="recursive least squares",
-        parameters=tuple(parameters),
-        fits=fits,
-        series=tuple(series),
-        covariance=joint_covariance(parts, changes, parameters),
-        status=status(parameters),
-        messages=tuple(messages),
-        labels={k: v for item in data for k, v in (item.labels or {}).items() if k in models},
-        histories=tuple(histories),
+        return Estimate(
+            task=task,
+            fit=_last(task.names, blocks, run),
+            off=lambda source: _run(task.blocks(source), forgetting).value[-1],
+            histories=tuple(_histories(task, run)),
+        )
+
+    return identify_each(
+        "recursive least squares", data, models, estimate, scales=scales, truth=truth
     )
 
 

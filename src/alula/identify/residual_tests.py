@@ -16,7 +16,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import fft, stats
+from scipy import fft, special
 
 from alula.base.arrays import Array
 
@@ -74,7 +74,7 @@ def ljung_box(residuals: Sequence[Array], lags: int = LAGS) -> Whiteness:
         total += power
     if dof == 0:
         return Whiteness(np.nan, 0, np.nan, np.nan)
-    return Whiteness(statistic, dof, float(stats.chi2.sf(statistic, dof)), first / total)
+    return Whiteness(statistic, dof, float(special.chdtrc(dof, statistic)), first / total)
 
 
 def input_correlations(
@@ -103,6 +103,6 @@ def input_correlations(
             continue
         lag = int(np.argmax(np.abs(cross)))
         tests = (lags + 1) * len(inputs)
-        p = 2.0 * float(stats.norm.sf(abs(cross[lag]) / np.sqrt(variance)))
+        p = 2.0 * float(special.ndtr(-abs(cross[lag]) / np.sqrt(variance)))
         found.append(InputCorrelation(name, lag, float(cross[lag]) / size, min(1.0, tests * p)))
     return tuple(found)

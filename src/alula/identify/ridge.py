@@ -15,7 +15,6 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from scipy import optimize
 
 from alula.base.arrays import Array
 from alula.base.messages import refuse
@@ -72,6 +71,8 @@ def _generalized_cross_validation(
     rows: Array, measured: Array, parts: Components, free: Flags
 ) -> float:
     """The k of the least n |z - X b|^2 / (n - trace)^2, over sixteen decades."""
+    from scipy.optimize import minimize_scalar  # slow to import, for this choice only
+
     n = len(measured)
     fixed = rows[:, free]
     rest = measured - fixed @ (parts.free_inverse @ (fixed.T @ measured))
@@ -86,7 +87,7 @@ def _generalized_cross_validation(
     grid = np.log(10.0) * np.linspace(-12.0, 4.0, 65)
     best = int(np.argmin([score(x) for x in grid]))
     lower, upper = grid[max(best - 1, 0)], grid[min(best + 1, len(grid) - 1)]
-    found = optimize.minimize_scalar(score, bounds=(lower, upper), method="bounded")
+    found = minimize_scalar(score, bounds=(lower, upper), method="bounded")
     return float(np.exp(found.x))
 
 

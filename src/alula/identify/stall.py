@@ -14,7 +14,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.signal import lfilter
 
 from alula.base.arrays import Array, frozen
 from alula.base.local_cubic import LocalCubic
@@ -41,6 +40,8 @@ def separation(
 
     Exact for an X0 that is linear between samples.
     """
+    from scipy.signal import lfilter  # slow to import, for stalls only
+
     steady = 0.5 * (1.0 - np.tanh(a1 * (alpha - tau2 * alphadot - alpha_star)))
     h = (t[-1] - t[0]) / (len(t) - 1)
     decay = np.exp(-h / tau1)

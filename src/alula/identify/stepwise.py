@@ -16,7 +16,7 @@ from __future__ import annotations
 from typing import Literal
 
 import numpy as np
-from scipy import stats
+from scipy.special import fdtrc
 
 from alula.base.arrays import Array
 from alula.base.coloured import coloured_covariance
@@ -113,7 +113,7 @@ def partial_f(pool: Pool, basis: Array, column: Array, colour: bool) -> tuple[fl
     if variance <= 0.0:
         return np.inf, 0.0
     f = value**2 / variance
-    return f, float(stats.f.sf(f, 1, freedom))
+    return f, float(fdtrc(1, freedom, f))
 
 
 def _best(

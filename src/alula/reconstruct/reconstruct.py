@@ -65,7 +65,9 @@ def reconstruct(
     messages: list[Message] = []
     status, converged, nis, readings = "", True, 0.0, 0
     for group, members in groups.items():
-        progress(f"reconstructing {', '.join(m.id for m in members)}")
+        ids = [m.id for m in members]
+        more = f" and {len(ids) - 3} more" if len(ids) > 3 else ""
+        progress(f"reconstructing {', '.join(ids[:3])}{more}")
         problem = make_problem(dict(flights), members, aircraft, spec)
         solution = METHODS[spec.filter](problem, spec)
         suffix = f"[{group}]" if len(groups) > 1 else ""

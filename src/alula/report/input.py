@@ -10,10 +10,10 @@ from alula.base.messages import Message
 from alula.flight import Maneuver, SourceFile
 from alula.identify.result import Identification
 from alula.reconstruct.result import Reconstruction
-from alula.validate.result import Validation
 
 if TYPE_CHECKING:
     from alula.logs.card import LogCard
+    from alula.validate.result import Validation
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,6 @@ from math import inf, log, pi
 from typing import Literal
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
 from alula.base.arrays import Array
 from alula.base.messages import refuse
@@ -164,6 +163,8 @@ def modes_of(
     at_home = np.stack(
         [share[[f == family for f in families]].sum(axis=0) for family in distinct], axis=1
     )
+    from scipy.optimize import linear_sum_assignment  # slow to import
+
     # One column for each state of a family: as many eigenvalues may take its name.
     columns = [distinct.index(f) for f in families]
     order = np.lexsort((roots.imag, roots.real))  # ties fall the same way in any order of states

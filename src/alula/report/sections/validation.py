@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 from alula.report.html import Html, escape, join, table, tag
 from alula.report.names import meaning
 from alula.report.numbers import MISSING, number, percent, plus_minus, shown, span
 from alula.report.pictures import mark
-from alula.validate.result import Criterion, Evidence, Flown, Validation
+
+if TYPE_CHECKING:
+    from alula.validate.result import Criterion, Evidence, Flown, Validation
 
 _VERDICT = {
     "pass": ("good", "pass"),

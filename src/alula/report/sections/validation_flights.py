@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,8 +14,9 @@ from alula.report.names import meaning, titled, unit_of
 from alula.report.numbers import number, shown
 from alula.report.pictures import mark
 from alula.report.sections.validation import SEEN, anchor
-from alula.validate.part60 import tolerances
-from alula.validate.result import ChannelMatch, Flown, Validation
+
+if TYPE_CHECKING:
+    from alula.validate.result import ChannelMatch, Flown, Validation
 
 _PAIRS = (
     ("alpha", "V"), ("theta", "q"), ("az", "ax"), ("beta", "ay"), ("p", "phi"), ("r", "psi"),
@@ -127,6 +129,8 @@ def _controls(one: Flown) -> Figure:
 
 
 def _figures(one: Flown, pairs: Sequence[tuple[str, ...]]) -> Iterator[Figure]:
+    from alula.validate.part60 import tolerances  # loads the simulator
+
     judged = tolerances(one)
     for pair in pairs:
         channels = [one.channels[n] for n in pair if one.channels[n].recorded]
