@@ -54,7 +54,7 @@ def geometry(table: GeometryTable, turn: Array, path: Path) -> Geometry:
             if section.airfoil not in airfoils:
                 at = f"{where}.surfaces.{surface.name}.sections[{k}].airfoil"
                 airfoils[section.airfoil] = _by_name(section.airfoil, airfoils, at)
-    return Geometry(surfaces, tuple(_body(b, turn) for b in table.bodies), airfoils)
+    return Geometry(surfaces, tuple(_body(b, turn) for b in table.bodies), airfoils, drag_area=table.drag_area)
 
 
 def _surface(table: SurfaceTable, turn: Array) -> LiftingSurface:
@@ -72,8 +72,9 @@ def _surface(table: SurfaceTable, turn: Array) -> LiftingSurface:
 def _control(table: ControlSurfaceTable) -> ControlSurface:
     hinge = table.hinge if isinstance(table.hinge, list) else [table.hinge] * 2
     return ControlSurface(
-        table.name, table.span[0], table.span[1], (hinge[0], hinge[1]), dict(table.gains)
-    )
+        table.name, table.span[0], table.span[1], (hinge[0], hinge[1]), dict(table.gains),
+        table.c_l_delta, table.c_m_delta,
+    )  # fmt: skip
 
 
 def _body(table: BodyTable, turn: Array) -> Body:
