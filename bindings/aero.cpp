@@ -21,7 +21,7 @@ void build(AeroTable* made, Matrix steps, Matrix terms, const std::vector<TableA
   if (steps.shape(0) > alula::kMaxSteps || terms.shape(0) > alula::kMaxTerms)
     throw nb::value_error("the model has more steps or terms than the table holds");
   if (tables.size() > 255) throw nb::value_error("at most 255 lookup tables");
-  auto lookups = std::make_shared<Lookups>();
+  auto lookups = std::make_shared<TableStore>();
   for (const TableArgument& table : tables) lookups->add(table);
   new (made) AeroTable{{}, lookups};
   alula::TermTable* self = &made->table;

@@ -6,14 +6,14 @@ Pusztai 2018, 2.2 and appendix C; docs/methods/strip_theory.md says where it dif
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
 
 from alula.aircraft import Aircraft
 from alula.aircraft.geometry import ControlSurface, Geometry, LiftingSurface
-from alula.base.arrays import Array
+from alula.base.arrays import Array, frozen
 from alula.base.messages import refuse
 from alula.core import core
 from alula.predict.downwash import datcom, gradient, horseshoe
@@ -36,7 +36,8 @@ class StripSurfaceData:
     """What strip theory takes of one lifting surface, for reports and tests.
 
     k: lift over the sections' lift; e: Oswald factor; c_l_alpha of the sections, 1/rad; downwash:
-    gradient that it feels; polar: where the sections come from, in words.
+    gradient that it feels; polar: where the sections come from, in words. table: (3, n) c_l c_d c_m
+    over table_alpha (n,) rad, see `full_circle`.
     """
 
     name: str
@@ -46,6 +47,8 @@ class StripSurfaceData:
     e: float
     downwash: float
     polar: str
+    table_alpha: Array
+    table: Array
 
 
 @dataclass(frozen=True)
@@ -126,19 +129,17 @@ def strip_model(
     strips: list[list[float]] = []
     sections: list[Array] = []
     for surface in ordered:
-        one, table, induced = _surface_data(aircraft, shape, surface)
-        gradient_here = 0.0
+        one, induced = _surface_data(aircraft, shape, surface)
         if surface.role == "tailplane":
-            gradient_here = _gradient(data[0], one, downwash)
-        one = _with_downwash(one, gradient_here)
+            one = replace(one, downwash=_gradient(data[0], one, downwash))
         mine = _strips(surface, one, reference)
         rows.append(
-            [len(strips), len(mine), one.k, induced, one.k * one.c_l_alpha, gradient_here,
+            [len(strips), len(mine), one.k, induced, one.k * one.c_l_alpha, one.downwash,
              float(surface.role == "wing")]
         )  # fmt: skip
         strips += mine
         data.append(one)
-        sections.append(np.ascontiguousarray(table))
+        sections.append(np.ascontiguousarray(one.table))
     center = reference if aircraft.mass is None else np.asarray(aircraft.mass.cg)
     wake, hub = propeller_wake(aircraft)
     incidence = float(np.mean([s.twist for s in wing.sections]))
@@ -160,8 +161,8 @@ def strip_model(
 
 def _surface_data(
     aircraft: Aircraft, shape: Geometry, surface: LiftingSurface
-) -> tuple[StripSurfaceData, Array, float]:
-    """Corrections of one surface, its section table and 1/(pi e A). One polar serves it: the
+) -> tuple[StripSurfaceData, float]:
+    """Corrections of one surface, with 1/(pi e A). One polar serves it: the
     first section's; thickness and camber between root and tip are not followed.
     """
     plan = planform(surface)
@@ -176,13 +177,11 @@ def _surface_data(
     k, e = finite.slope / slope, 1.0 / (1.0 + finite.delta)
     induced = 1.0 / (np.pi * e * plan.aspect)
     table = full_circle(polar, k, induced, plan.aspect)
-    return StripSurfaceData(surface.name, plan, slope, k, e, 0.0, polar.source), table, induced
-
-
-def _with_downwash(one: StripSurfaceData, downwash: float) -> StripSurfaceData:
-    return StripSurfaceData(
-        one.name, one.plan, one.c_l_alpha, one.k, one.e, downwash, one.polar
+    alpha = np.linspace(-np.pi, np.pi, table.shape[1])
+    data = StripSurfaceData(
+        surface.name, plan, slope, k, e, 0.0, polar.source, frozen(alpha), table
     )
+    return data, induced
 
 
 def _gradient(wing: StripSurfaceData, tail: StripSurfaceData, given: float | None) -> float:
