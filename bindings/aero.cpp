@@ -39,6 +39,7 @@ void build(AeroTable* made, Matrix steps, Matrix terms, const std::vector<TableA
     self->terms[k] = {index_from(terms(k, 0)), index_from(terms(k, 1))};
   if (!alula::well_formed(*self, static_cast<int>(tables.size())))
     throw nb::value_error("a step or term refers to a slot that does not exist before it");
+  share_axes(*self, lookups->views);
 }
 
 void evaluate(const AeroTable& bound, Vector values, Matrix variables, MatrixOut out) {

@@ -6,6 +6,7 @@
 #include <deque>
 #include <memory>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "alula/aero/term_table.hpp"
@@ -23,13 +24,13 @@ struct TableStore {
     return numbers.emplace_back(from.data(), from.data() + from.shape(0)).data();
   }
 
-  // Tables with the same breakpoints share them, and so the search in them.
-  const double* keep_axis(const Vector& from) {
+  // Tables with the same breakpoints share them.
+  void set_axis(alula::Lookup<double>& view, std::size_t k, const Vector& from) {
     const std::vector<double> axis(from.data(), from.data() + from.shape(0));
-    for (const auto& known : axes)
-      if (*known == axis) return known->data();
-    axes.push_back(&numbers.emplace_back(axis));
-    return axes.back()->data();
+    std::size_t i = 0;
+    while (i < axes.size() && *axes[i] != axis) ++i;
+    if (i == axes.size()) axes.push_back(&numbers.emplace_back(axis));
+    view.axis[k] = axes[i]->data();
   }
 
   void add(const TableArgument& table) {
@@ -43,7 +44,7 @@ struct TableStore {
         if (!(given[i](k) > given[i](k - 1)))
           throw nb::value_error("breakpoints of a table must increase");
       if (n < 2 || n > 100000) throw nb::value_error("an axis has two breakpoints at least");
-      view.axis[i] = keep_axis(given[i]);
+      set_axis(view, i, given[i]);
       view.size[i] = static_cast<int>(n);
       points *= n;
     }
@@ -55,6 +56,24 @@ struct TableStore {
     views.push_back(view);
   }
 };
+
+// Numbers the axes that steps look up at the same slot, so that they share the search.
+inline void share_axes(const alula::TermTable& table, std::vector<alula::Lookup<double>>& views) {
+  std::vector<std::pair<const double*, int>> known;
+  for (int i = 0; i < table.step_count; ++i) {
+    const alula::Step& step = table.steps[static_cast<unsigned>(i)];
+    if (step.operation != alula::Operation::lookup) continue;
+    alula::Lookup<double>& view = views[step.table];
+    const int slots[] = {step.a, step.b, step.c};
+    for (std::size_t k = 0; k < static_cast<std::size_t>(view.axes); ++k) {
+      const std::pair<const double*, int> key{view.axis[k], slots[k]};
+      std::size_t at = 0;
+      while (at < known.size() && known[at] != key) ++at;
+      if (at == known.size()) known.push_back(key);
+      view.shared[k] = static_cast<std::int8_t>(at < alula::kSharedAxes ? at : -1);
+    }
+  }
+}
 
 struct AeroTable {
   alula::TermTable table;

@@ -20,7 +20,7 @@ from alula.base.messages import refuse
 _MOST_LIFT = (0.70, 3.0)  # c_l_max = 0.70 + 3 t/c
 _LEAST_DRAG = (0.012, 0.02)  # c_d0 = 0.012 + 0.02 t/c
 _LIFT_DRAG = 0.008  # over c_l^2
-_ROUNDING = float(np.radians(2.0))
+_ROUNDING = float(np.radians(1.0))
 _SLOPE_RANGE = float(np.radians(4.0))  # about zero lift, over which a table's slope is taken
 
 

@@ -19,6 +19,7 @@ from alula.model import AXES, VARIABLES, AeroModel, LookupTable, table_parts
 from alula.predict.table_error import TableError
 
 _PER_LINE = 10
+_SHARED = 16  # core/include/alula/aero/lookup.hpp
 
 
 def write_table_header(
@@ -50,18 +51,20 @@ def table_header(
         )
     parts = table_parts(model)
     axes: dict[bytes, tuple[str, Array]] = {}
+    shared: dict[tuple[str, str], int] = {}
     lines: list[str] = []
     views: list[str] = []
     for number, (name, table) in enumerate(parts.tables.items()):
-        names = []
-        for breakpoints in table.breakpoints:
+        names, numbers_of = [], []
+        for variable, breakpoints in zip(table.variables, table.breakpoints, strict=True):
             known = axes.setdefault(
                 breakpoints.tobytes(), (f"axis_{len(axes)}", np.asarray(breakpoints))
             )
             names.append(known[0])
+            numbers_of.append(shared.setdefault((known[0], variable), len(shared)))
         lines.append(f"// {name}({', '.join(table.variables)})")
         lines += _array(f"values_{number}", np.ravel(table.values))
-        views.append(_view(f"values_{number}", names, table))
+        views.append(_view(f"values_{number}", names, numbers_of, table))
     numbers = sum(t.values.size for t in parts.tables.values())
     numbers += sum(len(b) for _, b in axes.values())
     head = [
@@ -111,12 +114,14 @@ def _number(x: float) -> str:
     return text + ("f" if any(c in text for c in ".e") else ".0f")
 
 
-def _view(values: str, axes: Sequence[str], table: LookupTable) -> str:
+def _view(values: str, axes: Sequence[str], shared: Sequence[int], table: LookupTable) -> str:
+    shared = [*shared, *[-1] * (3 - len(axes))]
     sizes = [str(n) for n in table.values.shape] + ["1"] * (3 - len(axes))
     pointers = [*axes, *["nullptr"] * (3 - len(axes))]
     return (
         f"{{{values}, {{{', '.join(pointers)}}}, {{{', '.join(sizes)}}}, {len(axes)}, "
-        f"alula::Interpolation::{table.interpolation}, alula::Outside::{table.outside}}}"
+        f"alula::Interpolation::{table.interpolation}, alula::Outside::{table.outside}, "
+        f"{{{', '.join(str(n if n < _SHARED else -1) for n in shared)}}}}}"
     )
 
 

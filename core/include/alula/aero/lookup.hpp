@@ -14,7 +14,8 @@ enum class Outside : std::uint8_t {
 };
 
 // A view: breakpoints of each axis increase, at least two; values row by row, the last axis
-// fastest. No axes: zero everywhere.
+// fastest. No axes: zero everywhere. shared: a number, 0 to 15, for axes of several tables with the
+// same breakpoints at the same variable; -1: none.
 template <class T>
 struct Lookup {
   const T* values = nullptr;
@@ -23,6 +24,7 @@ struct Lookup {
   int axes = 0;
   Interpolation interpolation = Interpolation::linear;
   Outside outside = Outside::hold;
+  std::array<std::int8_t, 3> shared{-1, -1, -1};
 };
 
 namespace detail {
@@ -178,11 +180,17 @@ Lanes<T, W> lookup(const Lookup<T>& table, const Lanes<T, W>& a, const Lanes<T, 
   return Lanes<T, W>::load(value);
 }
 
-// Several tables at one point: tables that share an axis (the same breakpoints in one place) and a
-// slot share the search as well. `slots`: the point's variables, unchanged while it is in use.
+inline constexpr int kSharedAxes = 16;
+
+// Several tables at one point: those that share an axis and a slot share the search as well.
+// `slots`: the point's variables, unchanged while it is in use.
 template <class S, class T>
 class Lookups {
  public:
+  constexpr Lookups() {
+    for (Known& known : known_) known.slot = -1;
+  }
+
   constexpr S at(const Lookup<T>& table, const S* slots, int a, int b, int c) {
     if (table.axes == 0) return S(0);
     const auto& on_a = place(table, 0, slots, a);
@@ -193,29 +201,26 @@ class Lookups {
 
  private:
   struct Known {
-    const T* axis;
     int slot;
     Interpolation interpolation;
     Outside outside;
     detail::Neighbors<S> neighbors;
   };
-  static constexpr int kKnown = 16;
-  static constexpr int kAxes = 3;  // of one table: never overwritten while it is looked up
 
   constexpr const detail::Neighbors<S>& place(const Lookup<T>& table, int k, const S* slots,
                                               int slot) {
-    const T* axis = table.axis[static_cast<unsigned>(k)];
-    for (int i = 0; i < count_; ++i)
-      if (known_[i].axis == axis && known_[i].slot == slot &&
-          known_[i].interpolation == table.interpolation && known_[i].outside == table.outside)
-        return known_[i].neighbors;
-    Known& fresh = known_[count_ < kKnown ? count_++ : kKnown + k];
-    fresh = {axis, slot, table.interpolation, table.outside, on_axis(table, k, slots[slot])};
-    return fresh.neighbors;
+    const int shared = table.shared[static_cast<unsigned>(k)];
+    bool alone = shared < 0 || shared >= kSharedAxes;
+    for (int j = 0; j < k; ++j)  // a place that this lookup holds already
+      alone = alone || table.shared[static_cast<unsigned>(j)] == shared;
+    Known& known = known_[alone ? kSharedAxes + k : shared];
+    if (alone || known.slot != slot || known.interpolation != table.interpolation ||
+        known.outside != table.outside)
+      known = {slot, table.interpolation, table.outside, on_axis(table, k, slots[slot])};
+    return known.neighbors;
   }
 
-  int count_ = 0;
-  Known known_[kKnown + kAxes];
+  Known known_[kSharedAxes + 3];  // the last three: axes that are not shared
 };
 
 template <class T, int W>
