@@ -1,4 +1,4 @@
-"""The ARM-Hawk's lookup tables: time to build, error, time of a lookup; beside them a term table."""
+"""The ARM-Hawk's lookup tables: time to build, error, time of a lookup; and of a term table."""
 
 from __future__ import annotations
 

@@ -124,8 +124,8 @@ class TermTable:
 
     def evaluate(self, values: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], variables: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], out: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None:
         """
-        Coefficients (n, 6) for variables (n, 13): 1 V alpha beta phat qhat rhat de da dr df
-        dt mach; values: one per term.
+        Coefficients (n, 6) for variables (n, 14): 1 V alpha beta phat qhat rhat de da dr df
+        dt mach wash; values: one per term.
         """
 
     @property
@@ -319,3 +319,23 @@ class ManeuverFit:
 
     @property
     def axes(self) -> str: ...
+
+class StripAircraft:
+    """
+    Lifting surfaces by strips: see aero/strip_theory.hpp.
+    surfaces (m, 7): first strip, count, k, 1/(pi e A), k c_l_alpha, downwash
+    gradient, 1 for a wing. strips (n, 19): point, chord axis, normal, length,
+    area, half width, c_l_delta, c_m_delta, c_l_alpha, gains of de da dr df.
+    sections: per surface (3, n), c_l c_d c_m over -pi to pi.
+    """
+
+    def __init__(self, reference: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], CD_body: float, center: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], hub: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], incidence: float, downwash_by_angle: bool, surfaces: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], strips: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], sections: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]]) -> None: ...
+
+    def evaluate(self, flows: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], out: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], stability_axes: bool) -> None:
+        """
+        Coefficients (n, 6) for flows (n, 12): alpha beta phat qhat rhat de da dr df, and of
+        the slipstream (U_i - u_0)/V, Omega_i/V (1/m), R_i (m).
+        """
+
+    @property
+    def strip_count(self) -> int: ...

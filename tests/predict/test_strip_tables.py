@@ -158,5 +158,3 @@ int main() {{
     for j, c in enumerate(COEFFICIENTS):
         # Single precision: 1e-7 of coefficients up to 10, thirty of them added.
         np.testing.assert_allclose(found[:, j], true[c], atol=2e-5, err_msg=c)
-
-

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from alula.aircraft import Aircraft, load_aircraft
+from alula.aircraft import Aircraft, ElectricMotor, load_aircraft
 from alula.aircraft.mass import check_inertia
 from alula.aircraft.sampled import sampled
 from alula.base.messages import BadInput
@@ -55,9 +56,7 @@ def test_lift_and_control_slopes_in_closed_form(strips: StripModel) -> None:
     arm = -(tail.plan.quarter_chord[0] + 0.32) / strips.c
     # The flap's own moment about the quarter chord adds to lift times arm.
     flap = -0.645 * S_tail * tail.plan.chord / strips.c
-    assert slope(strips, "Cm", "de") == pytest.approx(
-        -S_tail * tail.k * 4.0 * arm + flap, rel=0.01
-    )
+    assert slope(strips, "Cm", "de") == pytest.approx(-S_tail * tail.k * 4.0 * arm + flap, rel=0.01)
 
 
 def test_roll_damping_in_closed_form(strips: StripModel) -> None:
@@ -98,11 +97,9 @@ def test_the_tail_in_the_slipstream_works_harder(strips: StripModel) -> None:
 
 
 def test_the_propeller_turned_the_other_way_mirrors_the_loads(aircraft: Aircraft) -> None:
-    from dataclasses import replace
-
     engine = aircraft.engines[0]
     machine = engine.machine
-    assert machine is not None and hasattr(machine, "propeller")
+    assert isinstance(machine, ElectricMotor)
     other = replace(machine, propeller=replace(machine.propeller, sense=-1.0))
     mirror = replace(aircraft, engines=(replace(engine, machine=other),))
     a, b = strip_model(aircraft), strip_model(mirror)
@@ -118,16 +115,14 @@ def test_the_propeller_turned_the_other_way_mirrors_the_loads(aircraft: Aircraft
 
 def test_the_wake_keeps_momentum_and_angular_momentum(aircraft: Aircraft) -> None:
     machine = aircraft.engines[0].machine
-    assert machine is not None and hasattr(machine, "propeller")
+    assert isinstance(machine, ElectricMotor)
     p = machine.propeller
     wake = wake_of(p)
     n, rho, V, D = 100.0, 1.2, 0.3 * 100.0 * 0.508, 0.508  # J = 0.3, a knot of the curves
     thrust = float(p.CT[3]) * rho * n**2 * D**4
     torque = float(p.CP[3]) * rho * n**2 * D**5 / (2.0 * np.pi)
     U = np.sqrt(V**2 + 2.0 * thrust / (rho * np.pi * (0.5 * D) ** 2))
-    excess, swirl, radius = (
-        float(x[0]) for x in wake.at(np.array([1.0]), np.array([U / V - 1.0]))
-    )
+    excess, swirl, radius = (float(x[0]) for x in wake.at(np.array([1.0]), np.array([U / V - 1.0])))
     flux = rho * np.pi * radius**2 * U
     assert excess == pytest.approx(U / V - 1.0, rel=1e-12)
     assert flux * (U - V) == pytest.approx(thrust, rel=1e-12)
@@ -162,7 +157,8 @@ def test_samples_scatter_as_the_file_says(aircraft: Aircraft) -> None:
     n = 400
     drawn = [sampled(aircraft, rng) for _ in range(n)]
     u, mass = aircraft.uncertainty, aircraft.mass
-    assert u is not None and mass is not None
+    assert u is not None
+    assert mass is not None
     cg = np.array([a.mass.cg for a in drawn if a.mass is not None])
     hub = np.array([a.engines[0].position for a in drawn])
     total = np.array([a.mass.mass for a in drawn if a.mass is not None])

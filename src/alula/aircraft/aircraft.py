@@ -33,7 +33,7 @@ class Envelope:
 
 @dataclass(frozen=True)
 class Uncertainty:
-    """Standard deviations: mass, inertia and the propellers' inertia relative; cg and hub (3,) m."""
+    """Standard deviations: mass, inertia, the propellers' inertia relative; cg, hub (3,) m."""
 
     mass: float
     cg: Array

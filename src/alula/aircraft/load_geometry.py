@@ -54,7 +54,9 @@ def geometry(table: GeometryTable, turn: Array, path: Path) -> Geometry:
             if section.airfoil not in airfoils:
                 at = f"{where}.surfaces.{surface.name}.sections[{k}].airfoil"
                 airfoils[section.airfoil] = _by_name(section.airfoil, airfoils, at)
-    return Geometry(surfaces, tuple(_body(b, turn) for b in table.bodies), airfoils, drag_area=table.drag_area)
+    return Geometry(
+        surfaces, tuple(_body(b, turn) for b in table.bodies), airfoils, drag_area=table.drag_area
+    )
 
 
 def _surface(table: SurfaceTable, turn: Array) -> LiftingSurface:

@@ -1,4 +1,4 @@
-"""An aircraft as it might be: mass, center of gravity, inertia and hubs drawn within their errors."""
+"""An aircraft as it might be: mass, center of gravity, inertia, hubs within their errors."""
 
 from __future__ import annotations
 

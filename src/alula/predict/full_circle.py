@@ -37,7 +37,11 @@ def full_circle(polar: Polar, k: float, induced: float, aspect: float) -> Array:
     lift, drag, moment = (
         PchipInterpolator(polar.alpha, y) for y in (k * polar.c_l, polar.c_d, polar.c_m)
     )
-    c_l[known], c_d[known], c_m[known] = lift(alpha[known]), drag(alpha[known]), moment(alpha[known])
+    c_l[known], c_d[known], c_m[known] = (
+        lift(alpha[known]),
+        drag(alpha[known]),
+        moment(alpha[known]),
+    )
     for side, end in ((1.0, high), (-1.0, low)):
         rows = side * alpha > side * end
         at = (
@@ -57,7 +61,7 @@ def full_circle(polar: Polar, k: float, induced: float, aspect: float) -> Array:
 def _behind(
     alpha: Array, stall: float, at: tuple[float, float, float], aspect: float
 ) -> tuple[Array, Array, Array]:
-    """Lift, whole drag and moment at angles (n,) from `stall` to 180 deg; at: their values there."""
+    """Lift, whole drag and moment at angles (n,) from `stall` to 180 deg; at: theirs there."""
     most = plate_drag(aspect)
     s, c = np.sin(stall), np.cos(stall)
     A2 = (at[0] - most * s * c) * s / c**2

@@ -61,7 +61,9 @@ def check_polar(polar: Polar, where: str) -> None:
     alpha = polar.alpha
     reach = np.radians(5.0)
     if len(alpha) < 3 or np.any(np.diff(alpha) <= 0.0) or alpha[0] > -reach or alpha[-1] < reach:
-        span = f"{np.degrees(alpha[0]):g} to {np.degrees(alpha[-1]):g} deg" if len(alpha) else "none"
+        span = (
+            f"{np.degrees(alpha[0]):g} to {np.degrees(alpha[-1]):g} deg" if len(alpha) else "none"
+        )
         raise refuse(
             "polar_range",
             where=where,

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any, Literal
 
 import numpy as np
@@ -19,8 +20,8 @@ from alula.core import core
 from alula.predict.downwash import datcom, gradient, horseshoe
 from alula.predict.full_circle import full_circle
 from alula.predict.lifting_line import correction, lifting_line
-from alula.predict.planform import Planform, planform
 from alula.predict.plain_flap import flap_constants
+from alula.predict.planform import Planform, planform
 from alula.predict.polars import lift_slope, section_polar
 from alula.predict.wake import Wake, propeller_wake
 
@@ -107,8 +108,8 @@ def strip_model(
 ) -> StripModel:
     """The strips of an aircraft.
 
-    CD_body: drag of all that is no lifting surface; None: the file's drag area over S. downwash: gradient at the tailplane,
-    None: mean of the Datcom's and the horseshoe vortex's. downwash_by: 'lift': it goes with the
+    CD_body: drag of all that is no lifting surface; None: the file's drag area over S. downwash:
+    gradient at the tailplane, None: mean of the Datcom's and the horseshoe vortex's. downwash_by: 'lift': it goes with the
     wing's lift, also behind stall; 'angle': with the wing's angle of attack, as Pusztai's (2.44a).
     Raises BadInput where the file has no geometry or no wing, or a polar cannot be used.
     """
@@ -154,9 +155,7 @@ def strip_model(
         np.array(strips, dtype=np.float64),
         sections,
     )
-    return StripModel(
-        aircraft.name, aircraft.S, aircraft.b, aircraft.c, tuple(data), wake, made
-    )
+    return StripModel(aircraft.name, aircraft.S, aircraft.b, aircraft.c, tuple(data), wake, made)
 
 
 def _surface_data(
@@ -197,9 +196,7 @@ def _gradient(wing: StripSurfaceData, tail: StripSurfaceData, given: float | Non
     return gradient((chart, vortex)).value
 
 
-def _strips(
-    surface: LiftingSurface, data: StripSurfaceData, reference: Array
-) -> list[list[float]]:
+def _strips(surface: LiftingSurface, data: StripSurfaceData, reference: Array) -> list[list[float]]:
     """Rows of the core's strips, the right half and its mirror image. Edges are where sections and
     controls begin and end.
     """
@@ -209,7 +206,7 @@ def _strips(
     edges = np.unique(np.round(np.clip(joints, 0.0, 1.0), 9))
     longest = _LONGEST * (1.0 if surface.mirror else 2.0)
     out = []
-    for a, b in zip(edges[:-1], edges[1:], strict=True):
+    for a, b in pairwise(edges):
         n = max(1, int(np.ceil((b - a) / (2.0 * longest))))
         for i in range(n):
             fractions = (a + (b - a) * i / n, a + (b - a) * (i + 1) / n)
@@ -263,7 +260,7 @@ def _strip(
 
 def _quarter(surface: LiftingSurface, fraction: float) -> Array:
     lead, chord, _ = surface.at(fraction)
-    return lead - np.array([0.25 * chord, 0.0, 0.0])
+    return np.asarray(lead - np.array([0.25 * chord, 0.0, 0.0]))
 
 
 def _gains(control: ControlSurface | None, side: float) -> list[float]:

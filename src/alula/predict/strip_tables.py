@@ -1,4 +1,4 @@
-"""Strip theory as lookup tables: an AeroModel whose coefficients are sums of tables over three axes.
+"""Strip theory as lookup tables: an AeroModel of sums of tables over up to three axes.
 
 As Pusztai 2018, Eq. (2.47), but his tables of six and seven axes are taken apart: a base over angle
 of attack, sideslip and wash; beside it what each control and each rate adds, over the angle that
@@ -26,7 +26,7 @@ INCREMENTS: dict[str, tuple[str, tuple[str, ...]]] = {
     "da": ("alpha", ("CD", "Cl", "Cm", "Cn")),
     "phat": ("alpha", ("CY", "Cl", "Cn")),
     "qhat": ("alpha", ("CD", "CL", "Cm")),
-    "dr": ("beta", ("CY", "Cl", "Cn")),
+    "dr": ("beta", ("CD", "CY", "Cl", "Cm", "Cn")),
     "rhat": ("beta", ("CY", "Cl", "Cn")),
 }
 SHRINKS = {"alpha": "cos2_beta", "beta": "cos2_alpha"}

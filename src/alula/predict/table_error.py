@@ -81,9 +81,7 @@ def _column(drawn: Mapping[str, Array], name: str) -> Array:
     return drawn.get(name, np.zeros(n))
 
 
-def _error(
-    what: str, strips: StripModel, tables: AeroModel, at: Mapping[str, Array]
-) -> TableError:
+def _error(what: str, strips: StripModel, tables: AeroModel, at: Mapping[str, Array]) -> TableError:
     n = len(next(iter(at.values())))
     variables = {v: np.zeros(n) for v in FLIGHT} | dict(at)
     true = strips.evaluate(variables)
