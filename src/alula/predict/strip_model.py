@@ -109,8 +109,9 @@ def strip_model(
     """The strips of an aircraft.
 
     CD_body: drag of all that is no lifting surface; None: the file's drag area over S. downwash:
-    gradient at the tailplane, None: mean of the Datcom's and the horseshoe vortex's. downwash_by: 'lift': it goes with the
-    wing's lift, also behind stall; 'angle': with the wing's angle of attack, as Pusztai's (2.44a).
+    gradient at the tailplane; None: mean of the Datcom's and the horseshoe vortex's. downwash_by:
+    'lift': it goes with the wing's lift, behind stall too; 'angle': with the wing's angle of
+    attack, as Pusztai's (2.44a).
     Raises BadInput where the file has no geometry or no wing, or a polar cannot be used.
     """
     shape = aircraft.geometry
