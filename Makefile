@@ -30,7 +30,7 @@ demo: $(STAMP)
 	@$(BIN)/python examples/demo/demo.py
 
 test: $(STAMP)
-	$(BIN)/python -m pytest -m "not slow"
+	$(BIN)/python -m pytest -m "not slow" --numprocesses auto --maxprocesses 8 --dist loadfile
 
 # The peer that the filters are measured against; the other peers are optional.
 bench: $(STAMP)

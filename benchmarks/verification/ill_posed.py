@@ -2,13 +2,15 @@
 
 Random are the derivatives (within 30 % of the SportStar's), airspeed, inputs and noise. What is
 asked: a verdict every time, and no value that is wrong by more than four of its own standard errors
-and reads 'ok'.
+and reads 'ok'. Of some thousand values one may lie that far off by chance: how many are expected
+to, and what becomes of such a problem with other noise, is printed beside it.
 """
 
 from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass, replace
+from math import erfc, sqrt
 
 import numpy as np
 
@@ -28,6 +30,7 @@ ROLL = {
     "Cn": "beta + phat + rhat + da + dr",
 }
 WRONG = 4.0  # standard errors
+AGAIN = 100  # other noises, with which a problem that came out wrong is repeated
 DEG = np.pi / 180.0
 
 
@@ -44,16 +47,23 @@ class Problem:
 
 @dataclass(frozen=True)
 class Judged:
-    """What became of one problem. wrong: parameters that read 'ok' and are not."""
+    """What became of one problem. off: of parameters that read 'ok', by how many of their own
+    standard errors they are off, by name.
+    """
 
     kind: str
     verdicts: tuple[str, ...]
-    wrong: tuple[str, ...]
+    off: dict[str, float]
     status: str
 
+    @property
+    def wrong(self) -> tuple[str, ...]:
+        """Parameters that read 'ok' and are not."""
+        return tuple(name for name, off in self.off.items() if not abs(off) <= WRONG)
 
-def problem(seed: int, kind: str | None) -> Problem:
-    """The problem of a seed; kind None: a well-posed one."""
+
+def problem(seed: int, kind: str | None, noise: int = 0) -> Problem:
+    """The problem of a seed; kind None: a well-posed one. noise: another number, other noise."""
     random = np.random.default_rng([seed, 0 if kind is None else 1 + KINDS.index(kind)])
     base = sportstar().model.params
     names = [n for n in base if not n.endswith("_0") and "(" not in n]
@@ -66,7 +76,7 @@ def problem(seed: int, kind: str | None) -> Problem:
         aspect=aspect, substeps=4,
     )  # fmt: skip
     outputs = LATERAL if lateral else LONGITUDINAL
-    maneuver = measured(aircraft, flight, outputs, int(random.integers(2**31)))
+    maneuver = measured(aircraft, flight, outputs, int(random.integers(2**31)) + noise)
     formulas = dict(ROLL if lateral else PITCH)
     if kind == "unobservable":
         formulas["Cn" if lateral else "Cm"] += random.choice([" + df", " + df^2"])
@@ -138,15 +148,27 @@ def judged(p: Problem) -> Judged:
             truth=p.truth,
         )
     except BadInput as bad:
-        return Judged(p.kind, (), (), f"refused: {bad}")
-    wrong = []
-    for q in found.parameters:
-        if "(0)" not in q.name and q.verdict == "ok":
-            off = abs(q.value - p.truth.get(q.name, 0.0)) / q.se
-            if not off <= WRONG:
-                wrong.append(f"{q.name} {off:.1f}")
+        return Judged(p.kind, (), {}, f"refused: {bad}")
+    off = {
+        q.name: (q.value - p.truth.get(q.name, 0.0)) / q.se
+        for q in found.parameters
+        if "(0)" not in q.name and q.verdict == "ok"
+    }
     verdicts = tuple(q.verdict for q in found.parameters)
-    return Judged(p.kind, verdicts, tuple(wrong), found.status)
+    return Judged(p.kind, verdicts, off, found.status)
+
+
+def again(seed: int, kind: str | None, name: str, off: float) -> str:
+    """The same problem with other noise: an error of the method comes back, chance does not."""
+    every = [judged(problem(seed, kind, 1 + i)).off.get(name) for i in range(AGAIN)]
+    z = np.array([x for x in every if x is not None])
+    words = f"{name} of seed {seed} ({kind or 'well-posed'}), {off:+.2f} standard errors off"
+    if len(z) < 2:
+        return f"{words}; with {AGAIN} other noises it does not read ok"
+    return (
+        f"{words}; with {AGAIN} other noises mean {z.mean():+.2f}, deviation {z.std(ddof=1):.2f}, "
+        f"{int(np.sum(np.abs(z) > WRONG))} beyond {WRONG:g}"
+    )
 
 
 def ill_posed(quick: bool) -> tuple[str, bool]:
@@ -161,10 +183,19 @@ def ill_posed(quick: bool) -> tuple[str, bool]:
     ok = sum(v == "ok" for v in verdicts) / len(verdicts)
     refused = sum(1 for j in good if not j.verdicts or j.status.startswith("failed"))
     wrong_good = [j.wrong for j in good if j.wrong]
+    checked = sum(len(j.off) for j in (*bad, *good))
+    repeated = [
+        again(seed, None if which is good else j.kind, name, j.off[name])
+        for which in (bad, good)
+        for seed, j in enumerate(which)
+        for name in j.wrong
+    ]
     got = (
         f"{runs} ill-posed: {sum(1 for j in bad if j.verdicts)} with a verdict, {lost} with "
         f"something not identifiable, with a wrong value that reads ok: {dict(wrong) or 'none'}; "
         f"{runs} well-posed: {ok:.1%} of {len(verdicts)} parameters ok, {refused} refused or "
-        f"failed, {len(wrong_good)} with a wrong value"
+        f"failed, {len(wrong_good)} with a wrong value; of {checked} "
+        f"values that read ok {checked * erfc(WRONG / sqrt(2.0)):.2f} are expected that far off by "
+        "chance" + "".join(f"; {words}" for words in repeated)
     )
     return got, said and not wrong and ok >= 0.95 and not refused and not wrong_good

@@ -15,9 +15,9 @@ from scipy.signal import lfilter
 from alula.aircraft import load_aircraft
 from alula.base.arrays import Array
 from alula.flight import Maneuver
-from alula.identify.coefficients import Reference
-from alula.identify.measured_maneuver import CONTROLS, OUTPUTS, MeasuredManeuver
+from alula.identify.measured_maneuver import MeasuredManeuver
 from alula.model import AeroModel, load_model
+from alula.plan.expected import without_noise
 from alula.simulate import Airframe, Condition, SimulatedFlight, airframe_of, fly, trim
 from alula.simulate.inputs import Signal
 from alula.simulate.pilot import Pilot
@@ -125,27 +125,6 @@ def measured(
     memory: float = 0.0,
 ) -> MeasuredManeuver:
     """The maneuver with noise on its outputs; seed None: without. Inputs are exact."""
-    m, r = flight.motion, aircraft.model.reference
-    n = len(m.t)
-    added = {} if seed is None else noise(outputs, n, seed, memory)
-    recorded = dict(m.recorded)  # in stability axes; without a formula they are asked for in body
-    sine, cosine = np.sin(m.alpha), np.cos(m.alpha)
-    recorded["CX"] = recorded["CL"] * sine - recorded["CD"] * cosine
-    recorded["CZ"] = -recorded["CL"] * cosine - recorded["CD"] * sine
-    motion = {name: np.array(getattr(m, name)) for name in OUTPUTS[:8]}
-    return MeasuredManeuver(
-        maneuver=m.maneuver,
-        t=np.array(m.t),
-        outputs={o: getattr(m, o) + added.get(o, 0.0) for o in outputs},
-        motion=motion,
-        controls={k: v for k, v in m.controls.items() if k in CONTROLS},
-        rho=np.array(m.rho),
-        reference=Reference(r.S, r.b, r.c, aircraft.model.reference_point),
-        mass=aircraft.airframe.mass,
-        inertia=np.array(aircraft.airframe.inertia),
-        speed_of_sound=m.V / np.maximum(flight.mach, 1e-9),
-        force=np.array(flight.engine_force),
-        moment=np.array(flight.engine_moment),
-        arm=np.asarray(aircraft.model.reference_point) - aircraft.cg,
-        coefficients=recorded,
-    )
+    exact = without_noise(flight, aircraft.airframe, aircraft.model)
+    added = {} if seed is None else noise(outputs, len(exact.t), seed, memory)
+    return replace(exact, outputs={o: exact.outputs[o] + added.get(o, 0.0) for o in outputs})

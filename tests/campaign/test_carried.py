@@ -6,11 +6,13 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from alula.campaign.check import check_project
 from alula.campaign.measured import measured_maneuvers
 from alula.identify.carried import carried
 from alula.identify.output_error import identify_output_error
+from alula.identify.output_error_fit import Covariance
 from alula.identify.output_error_problem import STATE_SETS, Setting
 from alula.reconstruct import reconstruct
 from cli.command import demo_files, small_project
@@ -18,7 +20,10 @@ from cli.command import demo_files, small_project
 __all__ = ["demo_files"]
 
 
-def test_the_step_is_what_other_readings_give(demo_files: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize("covariance", ["diagonal", "full"])
+def test_the_step_is_what_other_readings_give(
+    demo_files: Path, tmp_path: Path, covariance: Covariance
+) -> None:
     project = small_project(demo_files, tmp_path / "project")
     checked = check_project(str(project.path))
     path = reconstruct(
@@ -30,7 +35,11 @@ def test_the_step_is_what_other_readings_give(demo_files: Path, tmp_path: Path) 
 
     def identified(m):
         return identify_output_error(
-            [m], models, states=setting.states, outputs=list(setting.outputs)
+            [m],
+            models,
+            states=setting.states,
+            outputs=list(setting.outputs),
+            covariance=covariance,
         )
 
     found = identified(maneuver)
@@ -38,7 +47,7 @@ def test_the_step_is_what_other_readings_give(demo_files: Path, tmp_path: Path) 
     strongest = max(shifts, key=lambda s: np.abs(s[id].get("alpha", np.zeros(1))).max())
     moved = {n: x + strongest[id].get(n, 0.0) for n, x in maneuver.outputs.items()}
     again = identified(replace(maneuver, outputs=moved))
-    wider = carried(found, [maneuver], models, [strongest], setting)
+    wider = carried(found, [maneuver], models, [strongest], setting, covariance=covariance)
     assert wider.uncertainty.endswith("reconstruction")
     told = 0
     for p, q, w in zip(found.parameters, again.parameters, wider.parameters, strict=True):
@@ -58,3 +67,35 @@ def test_nothing_to_carry_changes_nothing(demo_files: Path, tmp_path: Path) -> N
         checked.flights, checked.maneuvers, checked.aircraft, checked.project.reconstruct
     )
     assert measured_maneuvers(checked, path)[2] == []
+
+
+def test_a_second_sensor_s_own_bias_is_carried(demo_files: Path, tmp_path: Path) -> None:
+    """Where another channel of the quantity is read, its constants count and no others'."""
+    checked = check_project(str(small_project(demo_files, tmp_path / "project").path))
+    path = reconstruct(
+        checked.flights, checked.maneuvers, checked.aircraft, checked.project.reconstruct
+    )
+    first = measured_maneuvers(checked, path)[2]
+
+    def renamed(name: str) -> str:
+        return {"b_alpha": "b_alpha_2", "k_alpha": "k_alpha_2"}.get(name, name)
+
+    segments = tuple(
+        replace(
+            s,
+            sensors=tuple(
+                replace(x, name="alpha_2") if x.name == "alpha" else x for x in s.sensors
+            ),
+        )
+        for s in path.segments
+    )
+    constants = tuple(replace(c, name=renamed(c.name)) for c in path.constants)
+    assert constants != path.constants  # the demo's vane has constants to be unsure of
+    second = measured_maneuvers(checked, replace(path, segments=segments, constants=constants))[2]
+    assert len(first) == len(second)
+    for one, two in zip(first, second, strict=True):
+        assert one.keys() == two.keys()
+        for id in one:
+            assert one[id].keys() == two[id].keys()
+            for name in one[id]:
+                np.testing.assert_array_equal(one[id][name], two[id][name])

@@ -78,6 +78,8 @@ def test_options_of_another_method_are_left_aside_and_said() -> None:
         ("oe", {"priors": {"Cm_de": [1.0, 0.0]}}, "bad_option"),
         ("oe", {"bounds": {"Cm_de": [1.0]}}, "bad_option"),
         ("oe", {"algorithm": "simplex"}, "bad_option"),
+        ("oe", {"covariance": "banded"}, "bad_option"),
+        ("oe", {"covariance": "full", "noise": {"q": 0.01}}, "bad_option"),
         ("oe", {"substeps": 1.5}, "bad_option"),
         ("oe", {"initial": "guess"}, "bad_option"),
         ("magic", {}, "unknown_method"),

@@ -171,3 +171,29 @@ def test_predicted_errors_are_the_scatter_of_identifications(tmp_path: Path) -> 
             assert 0.4 < ratio < 2.0, (p.name, ratio)
             checked += 1
     assert checked >= 18
+
+
+def test_output_error_is_predicted_sharper_of_the_same_maneuvers(usual: Design) -> None:
+    """It needs no derivative of the rates; of forces it knows no more than the accelerometers."""
+    found = designed(method="oe")
+    assert (usual.method, found.method) == ("ee", "oe")
+    assert found.tree == usual.tree
+    by = {p.name: p for p in usual.together}
+    assert {p.name for p in found.together} == by.keys()
+    for p in found.together:
+        if np.isfinite(p.se):
+            assert 0.2 * by[p.name].se < p.se < 1.02 * by[p.name].se, p.name
+    elevator, lateral = found.maneuvers
+    assert {p.coefficient for p in elevator.predictions} == {"CD", "CL", "Cm"}
+    assert {p.coefficient for p in lateral.predictions} == {"CY", "Cl", "Cn"}
+
+
+def test_output_error_takes_the_sensors_there_are() -> None:
+    inertial = {n: t for n, t in SENSORS.items() if n in ("ax", "ay", "az", "p", "q", "r")}
+    whole, few = (
+        {p.name: p.se for p in designed(method="oe", sensors=s).together}
+        for s in (SENSORS, inertial)
+    )
+    assert all(few[n] >= 0.99 * whole[n] for n in whole)
+    with pytest.raises(BadInput, match="sigma for at least one of"):
+        designed(method="oe", sensors={"h": SENSORS["h"]})

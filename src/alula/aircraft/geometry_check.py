@@ -31,6 +31,18 @@ def check_geometry(shape: Geometry, file: AircraftFile, path: Path) -> tuple[Mes
         errors += _spans(surface, f"{where}.surfaces.{surface.name}.controls")
     for body in shape.bodies:
         errors += _body(body, f"{where}.bodies.{body.name}")
+    engines = [engine.name for engine in file.engines]
+    for name in shape.blades:
+        if name not in engines:
+            errors.append(
+                _error(
+                    "unknown_engine",
+                    f"{where}.blades.{name}",
+                    "the name of an engine: " + (", ".join(engines) or "the file has none"),
+                    f"'{name}'",
+                    "Name the table after the engine whose propeller it is.",
+                )
+            )
     if not errors:  # overlaps of a surface that is none would only repeat what was said
         errors += _together(shape.surfaces, f"{where}.surfaces")
     if errors:

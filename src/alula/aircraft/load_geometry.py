@@ -6,10 +6,13 @@ import csv
 import io
 from collections.abc import Mapping
 from difflib import get_close_matches
+from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from alula.aircraft.blades import Blades
 from alula.aircraft.frames import to_body
 from alula.aircraft.geometry import (
     Airfoil,
@@ -54,9 +57,26 @@ def geometry(table: GeometryTable, turn: Array, path: Path) -> Geometry:
             if section.airfoil not in airfoils:
                 at = f"{where}.surfaces.{surface.name}.sections[{k}].airfoil"
                 airfoils[section.airfoil] = _by_name(section.airfoil, airfoils, at)
-    return Geometry(
-        surfaces, tuple(_body(b, turn) for b in table.bodies), airfoils, drag_area=table.drag_area
-    )
+    bodies = tuple(_body(b, turn) for b in table.bodies)
+    blades = _blades(table.blades, f"{where}.blades")
+    return Geometry(surfaces, bodies, airfoils, blades, table.drag_area)
+
+
+def _blades(tables: Mapping[str, Mapping[str, Any]], where: str) -> dict[str, Blades]:
+    """By the engine's name."""
+    if not tables:
+        return {}
+    try:
+        loader = import_module("alula.aircraft.load_blades").load_blades
+    except ModuleNotFoundError:
+        raise refuse(
+            "not_built",
+            where=where,
+            expected="a version of Alula that reads propeller blades",
+            found="one that does not",
+            do="Leave [geometry.blades] out; CT and CP go under the engine.",
+        ) from None
+    return {name: loader(table, f"{where}.{name}") for name, table in tables.items()}
 
 
 def _surface(table: SurfaceTable, turn: Array) -> LiftingSurface:

@@ -92,7 +92,7 @@ def run_project(
     )
     stamps.append(time.perf_counter())
     progress("identifying")
-    models, messages = _models(project, checked.maneuvers)
+    models, messages = served_models(project, checked.maneuvers)
     data: tuple[CoefficientData, ...] = ()
     identification = NOTHING_ASKED
     if models:
@@ -176,6 +176,7 @@ def report_of(job: Job, date: str, seed: int | None) -> ReportInput:
         path=str(checked.project.path),
         date=date,
         aircraft=checked.aircraft.summary(),
+        shape=checked.aircraft,
         cards=checked.cards,
         maneuvers=checked.maneuvers,
         reconstruction=job.reconstruction,
@@ -200,7 +201,7 @@ NOTHING_ASKED = Identification(
 )
 
 
-def _models(
+def served_models(
     project: Project, chosen: Sequence[Maneuver]
 ) -> tuple[dict[str, str], tuple[Message, ...]]:
     """The project's models, less those that none of the chosen maneuvers serves; these are said."""

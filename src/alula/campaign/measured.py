@@ -33,7 +33,10 @@ ACCELERATIONS = ("pdot", "qdot", "rdot")
 
 @dataclass(frozen=True)
 class Reading:
-    """One sensor: t (k,) s, off (k,) reading minus what it should have been, SI; sigma, gain."""
+    """One sensor: t (k,) s, off (k,) reading minus what it should have been, SI; sigma, gain.
+
+    slope: (n,) of the quantity by the channel at the motion's stamps, 1 where they are the same.
+    """
 
     channel: str
     quantity: str
@@ -41,6 +44,7 @@ class Reading:
     off: Array
     sigma: float
     gain: float
+    slope: Array | float = 1.0
 
 
 def engines_of(flight: Flight, aircraft: Aircraft, motion: Motion) -> list[Thrust]:
@@ -66,12 +70,15 @@ def measured_maneuvers(
     reference = Reference(base.S, base.b, base.c, base.reference_point)
     out: list[MeasuredManeuver] = []
     said: list[Message] = []
+    sensors: list[Mapping[str, Reading]] = []
     for segment in reconstruction.segments:
         motion, log = segment.motion, segment.maneuver.log
         flight, aircraft = checked.flights[log], checked.aircraft_of(log)
         fuel = np.zeros(len(motion.t)) if motion.fuel_used is None else motion.fuel_used
         mass = aircraft.mass_properties(fuel)
-        readings, remarks = sensor_readings(segment, flight, _gains(reconstruction, segment, spec))
+        chosen, remarks = best_sensors(segment, flight, _gains(reconstruction, segment, spec))
+        sensors.append(chosen)
+        readings = _at_center(motion, chosen)
         outputs = [*readings, *(n for n in INERTIAL if n in flight)]
         if motion.window_s == 0.0:  # recorded, not differentiated here
             outputs += [n for n in ACCELERATIONS if n in flight]
@@ -89,15 +96,19 @@ def measured_maneuvers(
                 gravity=spec.gravity,
             )
         )
-    return tuple(out), tuple(dict.fromkeys(said)), reading_shifts(reconstruction, out)
+    return tuple(out), tuple(dict.fromkeys(said)), reading_shifts(reconstruction, out, sensors)
 
 
 def reading_shifts(
-    reconstruction: Reconstruction, maneuvers: Sequence[MeasuredManeuver]
+    reconstruction: Reconstruction,
+    maneuvers: Sequence[MeasuredManeuver],
+    sensors: Sequence[Mapping[str, Reading]],
 ) -> list[Shifts]:
     """How the readings move, for each independent direction of the constants' uncertainty.
 
-    A bias b and scale error k that are off by db, dk move a corrected reading x by -(db + dk x).
+    A bias b and scale error k that are off by db, dk move a corrected reading x by -(db + dk x),
+    over the gain and times the slope of the sensor that was read. sensors: those of each maneuver,
+    by output; inertial ones are read as they are.
     """
     if not reconstruction.constants:
         return []
@@ -109,13 +120,15 @@ def reading_shifts(
             continue
         off = dict(zip(names, (np.sqrt(variance) * direction).tolist(), strict=True))
         moved: dict[str, dict[str, Array]] = {}
-        for m in maneuvers:
+        for m, read in zip(maneuvers, sensors, strict=True):
             tags = ("", f"[{m.maneuver.log}]", f"[{m.maneuver.id}]")
             for name, x in m.outputs.items():
-                bias = sum(off.get(f"b_{name}{tag}", 0.0) for tag in tags)
-                scale = sum(off.get(f"k_{name}{tag}", 0.0) for tag in tags)
+                channel = read[name].channel if name in read else name
+                share = read[name].slope / read[name].gain if name in read else 1.0
+                bias = sum(off.get(f"b_{channel}{tag}", 0.0) for tag in tags)
+                scale = sum(off.get(f"k_{channel}{tag}", 0.0) for tag in tags)
                 if bias or scale:
-                    moved.setdefault(m.maneuver.id, {})[name] = -(bias + scale * x)
+                    moved.setdefault(m.maneuver.id, {})[name] = -share * (bias + scale * x)
         if moved:
             out.append(moved)
     return out
@@ -129,6 +142,14 @@ def sensor_readings(
     gain: 1 + scale error by channel. Where two sensors measure one quantity the better one is
     taken. A reading between two stamps goes to the nearer, moved along with the motion.
     """
+    best, said = best_sensors(segment, flight, gain)
+    return _at_center(segment.motion, best), said
+
+
+def best_sensors(
+    segment: Segment, flight: Flight, gain: Callable[[str], float]
+) -> tuple[dict[str, Reading], list[Message]]:
+    """The better sensor of each quantity, and what is to be said of those that are left."""
     best: dict[str, Reading] = {}
     said = []
     for reading in _of(segment, flight, gain):
@@ -146,16 +167,16 @@ def sensor_readings(
                     "standard deviation stated; reconstruction used both.",
                 )
             )
-    motion = segment.motion
-    out = {}
-    for name in AIR_AND_ATTITUDE:
-        if name in best:
-            r = best[name]
-            slope = np.ones(len(motion.t))
-            if name == "beta" and (kind_of(r.channel) or "") == "beta_flank":
-                slope = _flank_slope(motion)
-            out[name] = getattr(motion, name) + slope * _on_stamps(motion.t, r.t, r.off / r.gain)
-    return out, said
+    return best, said
+
+
+def _at_center(motion: Motion, sensors: Mapping[str, Reading]) -> dict[str, Array]:
+    """The readings (n,) by quantity at the motion's stamps, moved to the center of gravity."""
+    return {
+        name: getattr(motion, name) + r.slope * _on_stamps(motion.t, r.t, r.off / r.gain)
+        for name in AIR_AND_ATTITUDE
+        if (r := sensors.get(name)) is not None
+    }
 
 
 def _of(segment: Segment, flight: Flight, gain: Callable[[str], float]) -> Iterator[Reading]:
@@ -164,7 +185,9 @@ def _of(segment: Segment, flight: Flight, gain: Callable[[str], float]) -> Itera
         for s in segment.sensors:
             quantity = {"beta_flank": "beta"}.get(kind_of(s.name) or "", kind_of(s.name) or "")
             if quantity in AIR_AND_ATTITUDE and len(s.t):
-                yield Reading(s.name, quantity, s.t, s.measured - s.fitted, s.sigma, gain(s.name))
+                slope = _flank_slope(motion) if kind_of(s.name) == "beta_flank" else 1.0
+                off = s.measured - s.fitted
+                yield Reading(s.name, quantity, s.t, off, s.sigma, gain(s.name), slope)
         return
     for name in AIR_AND_ATTITUDE:  # as recorded: the motion is the channel, linear between samples
         if name not in flight or len(flight[name].t) < 2:

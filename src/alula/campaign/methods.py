@@ -25,6 +25,7 @@ from alula.identify.recursive_equation_error import identify_recursive
 from alula.identify.regression_choice import OPTIONS as REGRESSION
 from alula.identify.regression_choice import regression_choice
 from alula.identify.task import LONGITUDINAL
+from alula.identify.usual_outputs import USUAL_OUTPUTS
 
 Measured = tuple[tuple[MeasuredManeuver, ...], tuple[Message, ...], list[Shifts]]
 
@@ -129,12 +130,6 @@ def _frequency(task: IdentifyTask) -> Identification:
     return identify_frequency_regression(task.data, task.models, **options, truth=task.truth)
 
 
-# Which readings tell of which motion, where the project does not choose.
-OUTPUTS: Mapping[str, tuple[str, ...]] = {
-    "longitudinal": ("V", "alpha", "theta", "q", "ax", "az"),
-    "lateral": ("beta", "p", "r", "phi", "ay"),
-    "six": ("V", "alpha", "beta", "p", "q", "r", "phi", "theta", "ax", "ay", "az"),
-}
 LATERAL_OUTPUTS = frozenset({"beta", "p", "r", "phi", "ay", "pdot", "rdot"})
 
 
@@ -164,6 +159,10 @@ def _by_outputs(
         _one_of("algorithm", options["algorithm"], ("gauss_newton", "levenberg_marquardt"))
     options |= {k: f(options[k]) for k, f in (("tied", factors), ("priors", priors_of))
                 if k in options}  # fmt: skip
+    if options.get("covariance", "diagonal") != "diagonal":
+        _one_of("covariance", options["covariance"], ("diagonal", "full"))
+        if "noise" in options:
+            raise _bad("covariance", "diagonal, as noise is given", "'full'")
     if "bounds" in options:
         options["bounds"] = {k: tuple(v) for k, v in options["bounds"].items()}
     _one_of("initial", options.get("initial", "estimate"), ("estimate", "measured"))
@@ -189,7 +188,7 @@ def _by_outputs(
         )
         if identify is identify_output_error:
             setting = Setting(flown, tuple(outputs), **{k: own[k] for k in _SETTING & own.keys()})
-            rest = {k: own[k] for k in ("noise", "priors", "scales") if k in own}
+            rest = {k: own[k] for k in ("noise", "priors", "scales", "covariance") if k in own}
             found = carried(found, serving, models, shifts, setting, **rest)
         results.append(replace(found, formulas=found.formulas or models))
     result = merged(results)
@@ -249,13 +248,13 @@ def _outputs(
         if not split:
             return list(asked)
         return [n for n in asked if (n in LATERAL_OUTPUTS) == (name == "lateral")]
-    made = [n for n in OUTPUTS[name] if n in states or n not in STATE_SETS["six"]]
+    made = [n for n in USUAL_OUTPUTS[name] if n in states or n not in STATE_SETS["six"]]
     found = [n for n in made if all(n in m.outputs for m in maneuvers)]
     if not found:
         raise refuse(
             "no_output",
             where=f"output error, {name}",
-            expected="readings of " + ", ".join(OUTPUTS[name]),
+            expected="readings of " + ", ".join(USUAL_OUTPUTS[name]),
             found="none that every maneuver has",
             do="Map their channels.",
         )
@@ -330,6 +329,7 @@ IDENTIFIERS: Mapping[str, Method] = {
             "common_constant": "flag",
             "stabilize": "numbers",
             "noise": "numbers",
+            "covariance": "text",
             "algorithm": "text",
             "substeps": "number",
             "scales": "numbers",

@@ -11,15 +11,15 @@ from pathlib import Path
 import numpy as np
 
 from alula.base.messages import Message, note, refuse, warn
-from alula.base.provenance import provenance
 from alula.campaign.check import Checked, Progress, check_project
 from alula.campaign.hold_out import with_held_out
 from alula.campaign.job import (
     NOTHING_ASKED,
     Job,
-    _models,
     coefficient_data,
     identify_project,
+    report_of,
+    served_models,
 )
 from alula.campaign.learned import LEARNED, learned_from, seen_by
 from alula.flight import Maneuver
@@ -93,7 +93,7 @@ def run_validation(
     identification, messages = NOTHING_ASKED, tuple(_shared(spec.share, spec.filter, chosen))
     if given is None:
         progress("identifying")
-        models, said = _models(project, checked.maneuvers)
+        models, said = served_models(project, checked.maneuvers)
         messages += said
         identification = identify_project(
             checked, reconstruction, data, models, project.identify.method, seed=seed or 0
@@ -143,23 +143,13 @@ def run_validation(
 
 def report_of_validation(done: ValidationJob, date: str, seed: int | None) -> ReportInput:
     """What the report shows of a validation."""
-    job = done.job
-    checked = job.checked
-    return ReportInput(
-        name=checked.project.name,
-        path=str(checked.project.path),
-        date=date,
-        aircraft=checked.aircraft.summary(),
-        cards=checked.cards,
-        maneuvers=checked.maneuvers,
-        reconstruction=job.reconstruction,
-        identification=job.identification if job.identification.parameters else None,
+    base = report_of(done.job, date, seed)
+    return replace(
+        base,
+        identification=base.identification if done.job.identification.parameters else None,
         validation=done.validation,
-        messages=(*checked.messages, *job.messages),
         provenance={
-            **provenance(seed),
-            "project": checked.project.sha256,
-            "aircraft": checked.aircraft.sha256,
+            **base.provenance,
             "model": done.validation.source,
             **({"model_sha256": done.model_sha256} if done.model_sha256 else {}),
             "model_origin": done.model.provenance,

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+import inspect
+from collections.abc import Callable, Sequence
+from dataclasses import MISSING, dataclass, fields
 from enum import StrEnum
+from functools import wraps
 from math import radians
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
 
 import typer
 
@@ -72,23 +74,48 @@ AnywayOption = Annotated[
 
 @dataclass(frozen=True)
 class Asked:
-    """One command's aircraft and condition, as its options say."""
+    """One command's aircraft and condition: its fields are the command line's options."""
 
-    aircraft: Path
-    model: Path | None
-    V: float
-    h: float
-    kind: Kind
-    gamma_deg: float
-    bank_deg: float | None
-    n: float | None
-    turn_rate_deg: float | None
-    power: float
-    flaps_deg: float
-    fuel_used: float
-    engines: Engines
-    actuators: bool
-    anyway: bool
+    aircraft: AircraftArgument
+    V: SpeedOption
+    h: HeightOption
+    model: ModelOption = None
+    kind: KindOption = Kind.level
+    gamma_deg: GammaOption = 0.0
+    bank_deg: BankOption = None
+    n: LoadOption = None
+    turn_rate_deg: RateOption = None
+    power: PowerOption = 0.0
+    flaps_deg: FlapsOption = 0.0
+    fuel_used: FuelOption = 0.0
+    engines: EnginesOption = Engines.modeled
+    actuators: ActuatorsOption = False
+    anyway: AnywayOption = False
+
+
+def at_condition(command: Callable[..., None]) -> Callable[..., None]:
+    """A command whose first parameter is an `Asked`, with that one's options in its place."""
+    hints = get_type_hints(Asked, include_extras=True)
+    place = inspect.Parameter.KEYWORD_ONLY
+    first = [
+        inspect.Parameter(
+            f.name,
+            place,
+            default=inspect.Parameter.empty if f.default is MISSING else f.default,
+            annotation=hints[f.name],
+        )
+        for f in fields(Asked)
+    ]
+    own = inspect.signature(command, eval_str=True)
+    rest = [p.replace(kind=place) for p in list(own.parameters.values())[1:]]
+
+    @wraps(command)
+    def run(**given: Any) -> None:
+        command(Asked(**{p.name: given.pop(p.name) for p in first}), **given)
+
+    run.__signature__ = own.replace(parameters=[*first, *rest])  # type: ignore[attr-defined]
+    run.__annotations__ = {p.name: p.annotation for p in (*first, *rest)}
+    return run
 
 
 @dataclass(frozen=True)

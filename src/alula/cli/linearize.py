@@ -8,29 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from alula.cli.condition import (
-    ActuatorsOption,
-    AircraftArgument,
-    AnywayOption,
-    Asked,
-    BankOption,
-    Engines,
-    EnginesOption,
-    FlapsOption,
-    FuelOption,
-    GammaOption,
-    HeightOption,
-    Kind,
-    KindOption,
-    Loaded,
-    LoadOption,
-    ModelOption,
-    PowerOption,
-    RateOption,
-    SpeedOption,
-    load,
-    trim_result,
-)
+from alula.cli.condition import Asked, Loaded, at_condition, load, trim_result
 from alula.cli.contract import Command, JsonOption, QuietOption, SeedOption, ThreadsOption
 
 if TYPE_CHECKING:
@@ -39,22 +17,9 @@ if TYPE_CHECKING:
 _ANGLES = ("alpha", "beta", "phi", "theta", "psi", "p", "q", "r", "de", "da", "dr", "df")
 
 
+@at_condition
 def linearize(
-    aircraft: AircraftArgument,
-    V: SpeedOption,
-    h: HeightOption,
-    model: ModelOption = None,
-    kind: KindOption = Kind.level,
-    gamma_deg: GammaOption = 0.0,
-    bank_deg: BankOption = None,
-    n: LoadOption = None,
-    turn_rate_deg: RateOption = None,
-    power: PowerOption = 0.0,
-    flaps_deg: FlapsOption = 0.0,
-    fuel_used: FuelOption = 0.0,
-    engines: EnginesOption = Engines.modeled,
-    actuators: ActuatorsOption = False,
-    anyway: AnywayOption = False,
+    asked: Asked,
     move: Annotated[
         list[str] | None,
         typer.Option(
@@ -74,10 +39,6 @@ def linearize(
     """
     command = Command("linearization", json, seed, threads, quiet)
     with command.run():
-        asked = Asked(
-            aircraft, model, V, h, kind, gamma_deg, bank_deg, n, turn_rate_deg, power, flaps_deg,
-            fuel_used, engines, actuators, anyway,
-        )  # fmt: skip
         loaded = load(asked)
         found = loaded.trimmed()
         linear = loaded.linear(found)

@@ -10,28 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from alula.cli.condition import (
-    ActuatorsOption,
-    AircraftArgument,
-    AnywayOption,
-    Asked,
-    BankOption,
-    Engines,
-    EnginesOption,
-    FlapsOption,
-    FuelOption,
-    GammaOption,
-    HeightOption,
-    Kind,
-    KindOption,
-    LoadOption,
-    ModelOption,
-    PowerOption,
-    RateOption,
-    SpeedOption,
-    load,
-    trim_result,
-)
+from alula.cli.condition import Asked, Kind, at_condition, load, trim_result
 from alula.cli.contract import (
     Command,
     JsonOption,
@@ -56,22 +35,9 @@ class Against(StrEnum):
 _EDITIONS = {Against.mil: "MIL-F-8785C", Against.cs23: "CS-23", Against.cs25: "CS-25"}
 
 
+@at_condition
 def modes(
-    aircraft: AircraftArgument,
-    V: SpeedOption,
-    h: HeightOption,
-    model: ModelOption = None,
-    kind: KindOption = Kind.level,
-    gamma_deg: GammaOption = 0.0,
-    bank_deg: BankOption = None,
-    n: LoadOption = None,
-    turn_rate_deg: RateOption = None,
-    power: PowerOption = 0.0,
-    flaps_deg: FlapsOption = 0.0,
-    fuel_used: FuelOption = 0.0,
-    engines: EnginesOption = Engines.modeled,
-    actuators: ActuatorsOption = False,
-    anyway: AnywayOption = False,
+    asked: Asked,
     against: Annotated[
         list[Against] | None,
         typer.Option(help="Fail (exit 1) what this one asks and the modes miss; several times."),
@@ -100,18 +66,15 @@ def modes(
             writable(plot, "picture")
         from alula.simulate import judge, modes_of
 
-        asked = Asked(
-            aircraft, model, V, h, kind, gamma_deg, bank_deg, n, turn_rate_deg, power, flaps_deg,
-            fuel_used, engines, actuators, anyway,
-        )  # fmt: skip
         loaded = load(asked)
         found = loaded.trimmed()
         linear = loaded.linear(found)
         motion = linear.motion()
-        roots = modes_of(motion, V)
-        not_straight = "" if kind not in (Kind.turn, Kind.pull_up) else f"in a {kind.value}"
+        roots = modes_of(motion, asked.V)
+        turns = asked.kind in (Kind.turn, Kind.pull_up)
+        not_straight = f"in a {asked.kind.value}" if turns else ""
         judged = judge(
-            roots, motion, V, h,
+            roots, motion, asked.V, asked.h,
             aircraft_class=aircraft_class, category=category, not_straight=not_straight,
         )  # fmt: skip
         missed = _missed(judged, against or ())
@@ -121,7 +84,7 @@ def modes(
         command.result = {
             "trim": trim_result(found),
             "unsteady": linear.unsteady,
-            **modes_result(roots, judged, motion, V),
+            **modes_result(roots, judged, motion, asked.V),
             "class": aircraft_class,
             "category": category,
         }

@@ -23,6 +23,13 @@ if TYPE_CHECKING:
 _DEG = 57.29577951308232
 
 
+class Method(StrEnum):
+    """How the flights will be identified."""
+
+    ee = "ee"
+    oe = "oe"
+
+
 class Kind(StrEnum):
     """Inputs whose steps the a-priori modes give."""
 
@@ -53,6 +60,9 @@ def plan(
         typer.Option(metavar="PLAN", help="Take sensors, rate and wind of this plan."),
     ] = None,
     engines: EnginesOption = Engines.modeled,
+    method: Annotated[
+        Method, typer.Option(help="Whose standard errors: equation error or output error.")
+    ] = Method.ee,
     out: Annotated[
         Path | None,
         typer.Option(metavar="FILE", help="Write the plan there; `alula fly` flies it."),
@@ -87,6 +97,7 @@ def plan(
             h,
             requests=_requests(control or [], kind or []),
             engines=engines.value,
+            method=method.value,
             **given,
         )
         command.inputs = [
@@ -191,6 +202,7 @@ def plan_text(found: Design, folder: Path) -> str:
 def result_of(found: Design) -> dict[str, Any]:
     """The envelope's `result`. Angles in degrees where the name says so, else SI."""
     return {
+        "method": found.method,
         "trim": {
             "alpha_deg": found.trim.alpha * _DEG,
             "de_deg": found.trim.controls["de"] * _DEG,
@@ -229,6 +241,13 @@ def result_of(found: Design) -> dict[str, Any]:
     }
 
 
+_EXPECTED = {
+    "ee": "equation error with the sensors' white noise; constant errors found, model right",
+    "oe": "output error, Cramer-Rao bounds with the sensors' white noise; initial states estimated "
+    "along, constant errors found, air calm, model right",
+}
+
+
 def _prediction(p: Prediction) -> dict[str, Any]:
     return {
         "name": p.name,
@@ -264,10 +283,7 @@ def text_of(found: Design) -> str:
         tied = f": not apart from {', '.join(p.tied_to)}" if p.tied_to else ""
         se = f"{p.se:.2g}" if p.se < float("inf") else "-"
         lines.append(f"{p.name:<22}{p.value:>11.5g}{se:>13}{share:>10}  {p.verdict}{tied}")
-    lines.append(
-        "expected se: equation error with the sensors' white noise; constant errors found, model "
-        "right"
-    )
+    lines.append(f"expected se: {_EXPECTED[found.method]}")
     return "\n".join(lines)
 
 

@@ -5,50 +5,16 @@ from __future__ import annotations
 from math import degrees
 from typing import TYPE_CHECKING
 
-from alula.cli.condition import (
-    ActuatorsOption,
-    AircraftArgument,
-    AnywayOption,
-    Asked,
-    BankOption,
-    Engines,
-    EnginesOption,
-    FlapsOption,
-    FuelOption,
-    GammaOption,
-    HeightOption,
-    Kind,
-    KindOption,
-    LoadOption,
-    ModelOption,
-    PowerOption,
-    RateOption,
-    SpeedOption,
-    load,
-    trim_result,
-)
+from alula.cli.condition import Asked, at_condition, load, trim_result
 from alula.cli.contract import Command, JsonOption, QuietOption, SeedOption, ThreadsOption
 
 if TYPE_CHECKING:
     from alula.simulate import Trim
 
 
+@at_condition
 def trim(
-    aircraft: AircraftArgument,
-    V: SpeedOption,
-    h: HeightOption,
-    model: ModelOption = None,
-    kind: KindOption = Kind.level,
-    gamma_deg: GammaOption = 0.0,
-    bank_deg: BankOption = None,
-    n: LoadOption = None,
-    turn_rate_deg: RateOption = None,
-    power: PowerOption = 0.0,
-    flaps_deg: FlapsOption = 0.0,
-    fuel_used: FuelOption = 0.0,
-    engines: EnginesOption = Engines.modeled,
-    actuators: ActuatorsOption = False,
-    anyway: AnywayOption = False,
+    asked: Asked,
     json: JsonOption = "",
     seed: SeedOption = None,
     threads: ThreadsOption = 1,
@@ -61,10 +27,6 @@ def trim(
     """
     command = Command("trim", json, seed, threads, quiet)
     with command.run():
-        asked = Asked(
-            aircraft, model, V, h, kind, gamma_deg, bank_deg, n, turn_rate_deg, power, flaps_deg,
-            fuel_used, engines, actuators, anyway,
-        )  # fmt: skip
         loaded = load(asked)
         found = loaded.trimmed()
         command.inputs = loaded.files

@@ -1,8 +1,9 @@
 """The reconstruction's uncertainty carried into an estimate by output error.
 
 A bias that reconstruction found one standard deviation off moves every reading of its sensor, and
-the estimate by one Gauss-Newton step, `(sum J' J/R)^-1 sum J' dz/R`. The squares of these steps,
-over all independent directions of the reconstruction's uncertainty, are added to the variances.
+the estimate by one Gauss-Newton step, `(sum J' R^-1 J)^-1 sum J' R^-1 dz`. The squares of these
+steps, over all independent directions of the reconstruction's uncertainty, are added to the
+variances.
 """
 
 from __future__ import annotations
@@ -16,7 +17,8 @@ import numpy as np
 from alula.base.arrays import Array, frozen
 from alula.identify.likelihood import Prior
 from alula.identify.measured_maneuver import MeasuredManeuver
-from alula.identify.output_error_likelihood import OutputErrorLikelihood
+from alula.identify.output_error_fit import Covariance
+from alula.identify.output_error_likelihood import likelihood_of
 from alula.identify.output_error_problem import FlightProblem, Setting
 from alula.identify.result import Identification
 from alula.identify.verdict import verdict
@@ -36,6 +38,7 @@ def carried(
     noise: Mapping[str, float] | None = None,
     priors: Mapping[str, Prior] | None = None,
     scales: Mapping[str, float] | None = None,
+    covariance: Covariance = "diagonal",
 ) -> Identification:
     """The result with the shifts of the readings, one for each direction, in its error bars.
 
@@ -54,20 +57,24 @@ def carried(
     )  # fmt: skip
     problem = FlightProblem(learn, model, setting)
     known = None if noise is None else np.array([noise[n] for n in setting.outputs]) ** 2
-    sums = problem.evaluate(theta)
-    R = OutputErrorLikelihood(problem, known).variance(sums)
-    information = np.tensordot(1.0 / R, sums.information, 1)
-    information += np.diag([1.0 / priors[n].se ** 2 if priors and n in priors else 0.0
-                            for n in problem.names])  # fmt: skip
+    likelihood = likelihood_of(problem, known, covariance == "full")
+    at = likelihood(theta, True)
+    if at is None:
+        return result
+    weights = likelihood.weights(theta)
+    information = at.information + np.diag(
+        [1.0 / priors[n].se ** 2 if priors and n in priors else 0.0 for n in problem.names]
+    )
     score = np.zeros((len(theta), len(shifts)))
     for i, m in enumerate(learn):
-        _, slopes = problem.flight(theta, i)
+        weighted = np.einsum("noi,op->npi", problem.flight(theta, i)[1], weights)
+        counted = likelihood.counted(i)
         for o, name in enumerate(setting.outputs):
-            heard = np.isfinite(m.outputs[name])
+            heard = counted[:, o]
             for s, shift in enumerate(shifts):
                 moved = shift.get(m.maneuver.id, {}).get(name)
                 if moved is not None:
-                    score[:, s] += slopes[heard, o].T @ moved[heard] / R[o]
+                    score[:, s] += weighted[heard, o].T @ moved[heard]
     step = np.linalg.pinv(information, hermitian=True) @ score
     added = step @ step.T
     enough = {

@@ -95,7 +95,7 @@ def identify_extended_filter_error(
 
 
 class ExtendedFilter(NoisyProblem):
-    """A bank of extended filters, one per parameter vector, over several maneuvers."""
+    """Extended filters."""
 
     def __init__(
         self,
@@ -106,9 +106,8 @@ class ExtendedFilter(NoisyProblem):
         fixed: Mapping[str, float],
         start: Mapping[str, float],
     ) -> None:
-        self.models, self.records = models, records
+        self.models = models
         model = models[0]
-        self.driven = [model.states.index(s) for s in noisy]
         theta = np.zeros(len(unknowns.free))
         for r in records:
             for s in model.states:
@@ -136,20 +135,18 @@ class ExtendedFilter(NoisyProblem):
             for j, s in enumerate(m.states):
                 errors[s].append(e[np.isfinite(e[:, j]), j] / r.dt**0.5)
         guess = {**sensors, **first_process_noises(errors, sensors, records[0].dt), **start}
-        super().__init__(unknowns, noisy, model.outputs, theta, guess, fixed, model.belongs)
+        super().__init__(
+            unknowns, records, model.states, noisy, model.outputs, theta, guess, fixed,
+            model.belongs,
+        )  # fmt: skip
 
-    def run(self, members: Array) -> list[Innovations] | None:
-        """Innovations of every maneuver for m parameter vectors (m, free)."""
-        intensity = np.zeros((len(members), len(self.models[0].states)))
-        intensity[:, self.driven], R = self.noises(members)
-        out = []
-        for i, (model, record) in enumerate(zip(self.models, self.records, strict=True)):
-            values, x0 = self.unknowns.of(i, members[:, : self.free])
-            filtered = _filter(model, record, values, x0, intensity, R)
-            if not np.isfinite(filtered.v).all():
-                return None
-            out.append(filtered)
-        return out
+    def filtered(
+        self, maneuver: int, values: Array, x0: Array, intensity: Array, R: Array
+    ) -> Innovations | None:
+        """Innovations of a maneuver; None where a motion diverges."""
+        model, record = self.models[maneuver], self.records[maneuver]
+        found = _filter(model, record, values, x0, intensity, R)
+        return found if np.isfinite(found.v).all() else None
 
 
 def _filter(

@@ -82,7 +82,7 @@ def identify_filter_error(
 
 
 class FilterError(NoisyProblem):
-    """A bank of Kalman filters, one per parameter vector, over several maneuvers."""
+    """Kalman filters."""
 
     def __init__(
         self,
@@ -95,7 +95,6 @@ class FilterError(NoisyProblem):
         start: Mapping[str, float],
     ) -> None:
         self.model, self.records, self.unknowns = model, records, unknowns
-        self.driven = [model.states.index(s) for s in noisy]
         holes = any(not np.isfinite(r.outputs).all() for r in records)
         if gain == "steady" and holes:
             raise refuse(
@@ -108,26 +107,15 @@ class FilterError(NoisyProblem):
         self.varying = gain == "varying" or (gain == "auto" and holes)
         theta = unknowns.vector(without_noises(start), first_values(model, records, unknowns))
         super().__init__(
-            unknowns, noisy, model.outputs, theta, {**self._first_noises(theta), **start}, fixed,
-            model.belongs,
+            unknowns, records, model.states, noisy, model.outputs, theta,
+            {**self._first_noises(theta), **start}, fixed, model.belongs,
         )  # fmt: skip
 
-    def run(self, members: Array) -> list[Innovations] | None:
-        """Innovations of every maneuver for m parameter vectors (m, free)."""
-        intensity = np.zeros((len(members), len(self.model.states)))
-        intensity[:, self.driven], R = self.noises(members)
-        out = []
-        for i in range(len(self.records)):
-            values, x0 = self.unknowns.of(i, members[:, : self.free])
-            filtered = self._filter(self.records[i], values, x0, intensity, R)
-            if filtered is None:
-                return None
-            out.append(filtered)
-        return out
-
-    def _filter(
-        self, record: LinearRecord, values: Array, x0: Array, intensity: Array, R: Array
+    def filtered(
+        self, maneuver: int, values: Array, x0: Array, intensity: Array, R: Array
     ) -> Innovations | None:
+        """Innovations of a maneuver; None where there is no steady gain."""
+        record = self.records[maneuver]
         m = self.model.at(values)
         step = sample(m, record.dt)
         k, s = m.C.shape[-2:]

@@ -21,11 +21,12 @@ from alula.base.messages import note, refuse
 from alula.identify.fourier import fourier_integral, harmonics
 from alula.identify.likelihood import Fitted, Prior, Whitened, assembled
 from alula.identify.linear_model import LinearModel
-from alula.identify.linear_output_error import learned, prior_blocks
+from alula.identify.linear_output_error import learned, summed
 from alula.identify.linear_record import LinearRecord, Unknowns
 from alula.identify.linear_start import first_values
+from alula.identify.named_search import prior_blocks, search_named
 from alula.identify.noise_search import left_aside
-from alula.identify.optimizer import Algorithm, Likelihood, Point, minimize, with_prior
+from alula.identify.optimizer import Algorithm, Point
 from alula.identify.result import Identification
 
 Complex = np.ndarray
@@ -72,16 +73,7 @@ def identify_frequency_output_error(
     first = np.append(first_values(model, learn, unknowns), np.zeros(len(delayed)))
     first[np.array(["(0)" in n for n in names])] = 0.0  # the difference of the ends
     first = problem.vector(start or {}, first)
-    infinite = np.full(len(names), np.inf)
-    low = problem.vector({n: b[0] for n, b in (bounds or {}).items()}, -infinite)
-    high = problem.vector({n: b[1] for n, b in (bounds or {}).items()}, infinite)
-    search: Likelihood = problem.likelihood
-    if priors:
-        zero = np.zeros(len(names))
-        mean = problem.vector({n: p.mean for n, p in priors.items()}, zero)
-        weight = problem.vector({n: 1.0 / p.se**2 for n, p in priors.items()}, zero)
-        search = with_prior(search, mean, np.diag(weight))
-    found = minimize(search, first, algorithm=algorithm, lower=low, upper=high)
+    found = search_named(problem.likelihood, first, problem.vector, bounds, priors, algorithm)
     blocks = problem.blocks(found.value) if found.information.any() else []
     blocks += prior_blocks(names, found.value, priors or {})
     said = [
@@ -152,12 +144,7 @@ class FrequencyError:
         cost = 0.5 * count * float(np.sum(np.log(r)))
         if not derivatives:
             return Point(cost)
-        gradient, information = np.zeros(len(p)), np.zeros((len(p), len(p)))
-        for v, S in parts:
-            weighted = S / r[:, None]
-            gradient -= np.einsum("nik,ni->k", weighted, v)
-            information += np.tensordot(weighted, S, axes=([0, 1], [0, 1]))
-        return Point(cost, gradient, information)
+        return summed(cost, parts, r)
 
     def blocks(self, p: Array) -> list[Whitened]:
         """One block per output and maneuver, real and imaginary parts in turn."""

@@ -4,9 +4,10 @@ At its maximum a Gaussian likelihood is a linear regression of residuals on sens
 units of their standard deviations: the information matrix is X'X and the Cramer-Rao bounds are
 (X'X)^-1 (Dittrich 2016, Eq. (3.64)). So the regression's error bars for coloured residuals (Klein
 and Morelli 2006, Eq. (6.29) ff.), its ties and its verdicts serve here as they are. Each output of
-each maneuver is one block with its own autocorrelation; different outputs count as independent. No
-error bar is smaller than its Cramer-Rao bound: the coloured formula alone is, by up to a factor of
-three for constants, because residuals lack just what constants can imitate.
+each maneuver is one block with its own autocorrelation; different outputs count as independent,
+except where the search took their errors as going together. No error bar is smaller than its
+Cramer-Rao bound: the coloured formula alone is, by up to a factor of three for constants, because
+residuals lack just what constants can imitate.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from alula.identify.optimizer import Minimum
 from alula.identify.regression import Block, Regression
 from alula.identify.result import Fit, Identification, Parameter, Series
 from alula.identify.sandwich import sandwich
+from alula.identify.stillness import distrusted_if_still
 from alula.identify.verdict import assess
 
 
@@ -32,15 +34,13 @@ class Whitened:
     """One block at the maximum: sensitivities (n, k) and residual (n,), over their deviation.
 
     prior: a prior's row, whose variance is known to be 1 and not to be told from its residual.
-    coloured: (sensitivities (n, k), residual (n,)) whose autocorrelation makes the error bars,
-    where that is not the block's own: of outputs that are whitened together, R^-1 S and the
-    output's own residual (Klein and Morelli 2006, Eq. (6.29) ff.).
+    together: the same number for outputs of the same samples whose errors go together.
     """
 
     sensitivity: Array
     residual: Array
     prior: bool = False
-    coloured: tuple[Array, Array] | None = None
+    together: int | None = None
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ def regression_at(
     null = solution.null @ (solution.null.T @ (value * solution.scale))
     solution = replace(solution, value=value - null / solution.scale)
     residuals = tuple(b.residual for b in blocks)
-    rows = [b.coloured or (b.sensitivity, np.ones(1) if b.prior else b.residual) for b in blocks]
+    rows = _rows(blocks)
     if ordinates:
         rows = [(x, v) if len(v) > 1 else (np.vstack([x, 0.0 * x]), np.ones(2)) for x, v in rows]
         coloured = sandwich(rows, solution.dispersion)
@@ -99,6 +99,17 @@ def regression_at(
     )
 
 
+def _rows(blocks: Sequence[Whitened]) -> list[tuple[Array, Array]]:
+    """Sensitivities and residuals for the coloured covariance, joint ones side by side."""
+    single = [b for b in blocks if b.together is None]
+    rows = [(b.sensitivity, np.ones(1) if b.prior else b.residual) for b in single]
+    for number in sorted({b.together for b in blocks if b.together is not None}):
+        joint = [b for b in blocks if b.together == number]
+        S = np.stack([b.sensitivity for b in joint], axis=1)
+        rows.append((S, np.stack([b.residual for b in joint], axis=1)))
+    return rows
+
+
 def assembled(
     method: str,
     names: Sequence[str],
@@ -113,7 +124,8 @@ def assembled(
     messages: Sequence[Message] = (),
     ordinates: bool = False,
 ) -> Identification:
-    """The result of a search. belongs: by bare parameter name, the row it stands in.
+    """The result of a search. belongs: by bare parameter name, the row it stands in. ordinates:
+    rows are a transform's, as in `regression_at`, and what is fitted is over frequency, Hz.
 
     Where the search failed no parameter has a value: a point that is no maximum has no error bars.
     """
@@ -151,12 +163,23 @@ def assembled(
         replace(p, coefficient=belongs.get(p.name.split("[")[0], p.name.split("(")[0]))
         for p in parameters
     )
+    if not ordinates:  # amplitudes over frequency are not about a mean
+        parameters, unmoved = distrusted_if_still(parameters, fitted)
+        said += unmoved
     covariance = fit.coloured.covariance.copy()
     lost = [i for i, p in enumerate(parameters) if p.verdict == "not_identifiable"]
     covariance[lost, :] = np.nan
     covariance[:, lost] = np.nan
     series = tuple(
-        Series(f.output, f.maneuver, frozen(f.t), frozen(f.measured), frozen(f.model), f.held_out)
+        Series(
+            f.output,
+            f.maneuver,
+            frozen(f.t),
+            frozen(f.measured),
+            frozen(f.model),
+            f.held_out,
+            "Hz" if ordinates else "s",
+        )
         for f in fitted
     )
     return Identification(

@@ -18,7 +18,8 @@ from alula.identify.likelihood import Fitted, Prior, Whitened, assembled
 from alula.identify.linear_model import Hold, LinearModel, sample, sample_derivatives
 from alula.identify.linear_record import LinearRecord, Unknowns
 from alula.identify.linear_start import first_values
-from alula.identify.optimizer import Algorithm, Likelihood, Minimum, Point, minimize, with_prior
+from alula.identify.named_search import prior_blocks, search_named
+from alula.identify.optimizer import Algorithm, Likelihood, Minimum, Point, minimize
 from alula.identify.result import Identification
 
 HUGE = 1e12  # of a state or sensitivity: the model diverges
@@ -98,13 +99,7 @@ class OutputError:
         cost = 0.5 * float(self.count @ np.log(r))
         if not derivatives:
             return Point(cost)
-        k = len(p)
-        gradient, information = np.zeros(k), np.zeros((k, k))
-        for v, S in runs:
-            weighted = S / r[:, None]
-            gradient -= np.einsum("nik,ni->k", weighted, v)
-            information += np.tensordot(weighted, S, axes=([0, 1], [0, 1]))
-        return Point(cost, gradient, information)
+        return summed(cost, runs, r)
 
     def blocks(self, p: Array) -> list[Whitened]:
         """One block per output and maneuver, missing samples left out."""
@@ -201,27 +196,18 @@ def search(
 ) -> Minimum:
     """The search from regression's first values, `start` in their place where given."""
     first = unknowns.vector(start or {}, first_values(model, records, unknowns))
-    infinite = np.full(len(first), np.inf)
-    low = unknowns.vector({n: b[0] for n, b in (bounds or {}).items()}, -infinite)
-    high = unknowns.vector({n: b[1] for n, b in (bounds or {}).items()}, infinite)
-    if priors:
-        zero = np.zeros(len(first))
-        mean = unknowns.vector({n: p.mean for n, p in priors.items()}, zero)
-        weight = unknowns.vector({n: 1.0 / p.se**2 for n, p in priors.items()}, zero)
-        likelihood = with_prior(likelihood, mean, np.diag(weight))
-    return minimize(likelihood, first, algorithm=algorithm, lower=low, upper=high)
+    return search_named(likelihood, first, unknowns.vector, bounds, priors, algorithm)
 
 
-def prior_blocks(names: Sequence[str], value: Array, priors: Mapping[str, Prior]) -> list[Whitened]:
-    """A prior is one more observation of the parameter, in units of its standard error."""
-    out = []
-    for i, name in enumerate(names):
-        prior = priors.get(name, priors.get(name.split("[")[0]))
-        if prior is not None:
-            row = np.zeros((1, len(names)))
-            row[0, i] = 1.0 / prior.se
-            out.append(Whitened(row, np.array([(prior.mean - value[i]) / prior.se]), prior=True))
-    return out
+def summed(cost: float, runs: Sequence[tuple[Array, Array]], r: Array) -> Point:
+    """The cost with its slopes. runs: residuals (n, m) and sensitivities (n, m, k). r: (m,)."""
+    k = runs[0][1].shape[-1]
+    gradient, information = np.zeros(k), np.zeros((k, k))
+    for v, S in runs:
+        weighted = S / r[:, None]
+        gradient -= np.einsum("nik,ni->k", weighted, v)
+        information += np.tensordot(weighted, S, axes=([0, 1], [0, 1]))
+    return Point(cost, gradient, information)
 
 
 def learned(records: Sequence[LinearRecord]) -> list[LinearRecord]:

@@ -6,6 +6,7 @@ and 'sigma_ay', the deviation of an output's white noise.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
@@ -15,10 +16,10 @@ from alula.base.arrays import Array, frozen
 from alula.base.messages import Message, note
 from alula.identify.innovations import InnovationLikelihood, Innovations
 from alula.identify.likelihood import Fitted, Prior, Whitened, assembled
-from alula.identify.linear_output_error import prior_blocks
 from alula.identify.linear_record import LinearRecord, Unknowns
 from alula.identify.linear_start import white_noise
-from alula.identify.optimizer import Algorithm, Likelihood, Minimum, minimize, with_prior
+from alula.identify.named_search import prior_blocks, with_priors
+from alula.identify.optimizer import Algorithm, Minimum, minimize
 from alula.identify.result import Identification, Parameter
 
 QUIET = 1e-4  # of an output's standard deviation: least first value of its noise
@@ -26,16 +27,19 @@ LOWEST, HIGHEST = 1e-3, 1e4  # of a noise's first value: bounds of the search
 LARGEST = 1.0  # change of a noise's logarithm in one iteration: far from the maximum it overshoots
 
 
-class NoisyProblem:
-    """Names, first values and bounds of a filter error; `run` filters.
+class NoisyProblem(ABC):
+    """Names, first values and bounds of a filter error; `filtered` is the filter.
 
-    names: of the search's vector. first: (k,). logarithmic: the noises in it. belongs: by name, the
-    row each parameter stands in.
+    A bank of filters, one per parameter vector, over several maneuvers. names: of the search's
+    vector. first: (k,). logarithmic: the noises in it. belongs: by name, the row each parameter
+    stands in.
     """
 
     def __init__(
         self,
         unknowns: Unknowns,
+        records: Sequence[LinearRecord],
+        states: Sequence[str],
         noisy: Sequence[str],
         outputs: Sequence[str],
         theta: Array,
@@ -43,7 +47,8 @@ class NoisyProblem:
         fixed: Mapping[str, float],
         belongs: Mapping[str, str],
     ) -> None:
-        self.unknowns = unknowns
+        self.unknowns, self.records = unknowns, records
+        self.states, self.driven = len(states), [states.index(s) for s in noisy]
         self.free = len(unknowns.free)
         self.count = len(noisy)
         noises = [f"F_{s}" for s in noisy] + [f"sigma_{y}" for y in outputs]
@@ -54,9 +59,31 @@ class NoisyProblem:
         self.first = np.concatenate([theta, self.level[self.sought]])
         self.belongs = {**belongs, **{n: n.split("_", 1)[1] for n in noises}}
 
-    def run(self, members: Array) -> Sequence[Innovations] | None:
-        """Innovations of every maneuver for parameter vectors (m, k)."""
-        raise NotImplementedError
+    @abstractmethod
+    def filtered(
+        self, maneuver: int, values: Array, x0: Array, intensity: Array, R: Array
+    ) -> Innovations | None:
+        """Innovations of one maneuver for m values, initial states, intensities and variances.
+
+        None where the filter has no result.
+        """
+
+    def run(self, members: Array) -> list[Innovations] | None:
+        """Innovations of every maneuver for m parameter vectors (m, k)."""
+        intensity = np.zeros((len(members), self.states))
+        intensity[:, self.driven], R = self.noises(members)
+        out = []
+        for i in range(len(self.records)):
+            values, x0 = self.unknowns.of(i, members[:, : self.free])
+            found = self.filtered(i, values, x0, intensity, R)
+            if found is None:
+                return None
+            out.append(found)
+        return out
+
+    def vector(self, by_name: Mapping[str, float], default: Array) -> Array:
+        """(k,) values by name, none of them noises."""
+        return np.append(self.unknowns.vector(by_name, default[: self.free]), default[self.free :])
 
     def noises(self, members: Array) -> tuple[Array, Array]:
         """F F' (m, driven states) and variances of the outputs' noise (m, outputs)."""
@@ -96,12 +123,7 @@ def search_noises(
     likelihood = InnovationLikelihood(problem.run)
     names: Sequence[str] = problem.names
     low, high = problem.bounds(bounds)
-    search: Likelihood = likelihood
-    if priors:
-        zero, pad = np.zeros(problem.free), np.zeros(len(names) - problem.free)
-        mean = problem.unknowns.vector({n: p.mean for n, p in priors.items()}, zero)
-        weight = problem.unknowns.vector({n: 1.0 / p.se**2 for n, p in priors.items()}, zero)
-        search = with_prior(search, np.append(mean, pad), np.diag(np.append(weight, pad)))
+    search = with_priors(likelihood, problem.vector, priors, len(names))
     largest = np.append(np.full(problem.free, np.inf), np.full(len(names) - problem.free, LARGEST))
     found = minimize(
         search, problem.first, algorithm=algorithm, lower=low, upper=high, largest=largest

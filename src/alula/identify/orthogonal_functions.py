@@ -13,8 +13,6 @@ are carried back exactly.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from alula.base.arrays import Array
@@ -25,9 +23,7 @@ from alula.identify.structure import (
     Structure,
     about_constants,
     orthonormal,
-    predicted_squared_error,
-    press,
-    r2_of,
+    step_at,
     without,
 )
 
@@ -39,14 +35,15 @@ def orthogonal_functions(pool: Pool, *, least_share: float = 0.0) -> Structure:
 
     least_share: of the variation about the constant terms that a term must explain to be kept.
     """
-    total, fixed = about_constants(pool)
+    about = about_constants(pool)
+    total, _ = about
     core = orthonormal(pool.core)
     basis = core
     left = without(core, pool.measured)
     rest = without(core, pool.candidates)
     whole = np.sum(pool.candidates**2, axis=0)
     order: list[int] = []
-    steps: list[Step] = [_step(pool, basis, "", np.nan, total, fixed)]
+    steps: list[Step] = [step_at(pool, basis, about, "core", "", np.nan)]
     shares: list[float] = []
     most = min(MOST, len(pool.measured) - core.shape[1] - 1)
     while len(order) < min(most, len(pool.names)):
@@ -66,7 +63,7 @@ def orthogonal_functions(pool: Pool, *, least_share: float = 0.0) -> Structure:
         rest = without(p[:, None], rest)
         order.append(j)
         shares.append(float(gain[j]) / total if total > 0.0 else 0.0)
-        steps.append(_step(pool, basis, pool.names[j], f, total, fixed))
+        steps.append(step_at(pool, basis, about, "in", pool.names[j], f))
     errors = [s.pse for s in steps]
     best = int(np.argmin(errors))
     kept = [j for j, share in zip(order[:best], shares, strict=False) if share >= least_share]
@@ -76,11 +73,14 @@ def orthogonal_functions(pool: Pool, *, least_share: float = 0.0) -> Structure:
     steps = steps[: best + 1]
     while kept:
         fewer = [[i for i in kept if i != j] for j in kept]
-        tried = [_step(pool, orthonormal(pool.columns(f)), "", np.nan, total, fixed) for f in fewer]
+        tried = [
+            step_at(pool, orthonormal(pool.columns(f)), about, "out", pool.names[j], np.nan)
+            for f, j in zip(fewer, kept, strict=True)
+        ]
         i = int(np.argmin([s.pse for s in tried]))
         if tried[i].pse >= steps[-1].pse:
             break
-        steps.append(replace(tried[i], action="out", term=pool.names[kept[i]]))
+        steps.append(tried[i])
         why += f"; {pool.names[kept[i]]} became superfluous"
         kept = fewer[i]
     return Structure("orthogonal functions", tuple(sorted(kept)), tuple(steps), why)
@@ -109,15 +109,3 @@ def physical_values(columns: Array, measured: Array) -> Array:
     along = (p.T @ measured) / np.sum(p**2, axis=0)
     out: Array = np.linalg.solve(g, along)
     return out
-
-
-def _step(pool: Pool, basis: Array, name: str, f: float, total: float, fixed: int) -> Step:
-    left = without(basis, pool.measured)
-    return Step(
-        "in" if name else "core",
-        name,
-        f,
-        press(basis, pool.measured),
-        predicted_squared_error(left, total, fixed, basis.shape[1]),
-        r2_of(left, total),
-    )

@@ -4,8 +4,8 @@ Maximum likelihood where sensors are noisy and the air is still (Dittrich 2016, 
 (3.65); Jategaonkar, Flight Vehicle System Identification, 2nd ed. 2015, ch. 4; Klein and Morelli,
 Aircraft System Identification, 2nd ed. 2016, ch. 6). The nonlinear equations of motion are flown in
 the core with any formula of the model grammar; sensitivities are variational. The covariance of the
-noise is diagonal and estimated along, R = mean of e e' (Eq. (3.51)), which turns the cost into the
-sum of N/2 ln r_i.
+noise is estimated along, R = mean of e e' (Eq. (3.51)), diagonal unless asked otherwise, which
+turns the cost into N/2 ln det R, or the sum of N/2 ln r_i.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ from alula.identify.control_sign import signs_checked
 from alula.identify.feedback import Feedback, distrusted, feedback, warn_of_feedback
 from alula.identify.identifiability import UNCERTAIN
 from alula.identify.likelihood import Fitted, Prior, assembled
-from alula.identify.linear_output_error import prior_blocks
 from alula.identify.measured_maneuver import MeasuredManeuver
+from alula.identify.named_search import prior_blocks
 from alula.identify.optimizer import Algorithm, minimize
 from alula.identify.output_error_fit import Covariance, OutputErrorFit, fit_output_error
 from alula.identify.output_error_likelihood import likelihood_of

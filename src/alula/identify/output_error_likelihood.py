@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from alula.base.arrays import Array
 from alula.base.messages import refuse
@@ -62,6 +63,14 @@ class OutputErrorLikelihood:
         out: Array = np.maximum(sums.squares / np.maximum(sums.counts, 1), self.least)
         return out
 
+    def weights(self, theta: Array) -> Array:
+        """(m, m) R^-1."""
+        return np.diag(1.0 / self.variance(self.problem.evaluate(theta)))
+
+    def counted(self, i: int) -> NDArray[np.bool_]:
+        """(n, m) which readings of maneuver i count."""
+        return np.isfinite(self.problem.readings[i])
+
     def blocks(self, theta: Array) -> list[Whitened]:
         """One block per output and maneuver, missing samples left out."""
         deviation = np.sqrt(self.variance(self.problem.evaluate(theta)))
@@ -94,7 +103,9 @@ class FullCovarianceLikelihood(OutputErrorLikelihood):
 
     def __init__(self, problem: Problem) -> None:
         super().__init__(problem)
-        self._good = [np.isfinite(z).all(axis=1) for z in problem.readings]
+        self._good: list[NDArray[np.bool_]] = [
+            np.asarray(np.isfinite(z).all(axis=1)) for z in problem.readings
+        ]
         count, outputs = sum(int(g.sum()) for g in self._good), problem.readings[0].shape[1]
         if count <= 2 * outputs:
             raise refuse(
@@ -105,22 +116,24 @@ class FullCovarianceLikelihood(OutputErrorLikelihood):
                 do="Use covariance = 'diagonal', or put the outputs on one time base.",
             )
 
+    def weights(self, theta: Array) -> Array:
+        """(m, m) R^-1."""
+        R = self._covariance([v for v, _ in self._runs(theta)])
+        return np.asarray(np.linalg.inv(R), dtype=np.float64)
+
+    def counted(self, i: int) -> NDArray[np.bool_]:
+        """(n, m) which readings of maneuver i count: those of samples that have all."""
+        return np.broadcast_to(self._good[i][:, None], self.problem.readings[i].shape)
+
     def blocks(self, theta: Array) -> list[Whitened]:
-        """Outputs whitened together; error bars by each output's own autocorrelation."""
+        """Outputs whitened together, their residuals' correlation over time included."""
         runs = self._runs(theta)
-        R = self._covariance([v for v, _ in runs])
-        inverse = np.linalg.inv(R)
-        root = np.linalg.cholesky(inverse).T
-        size = np.sqrt(np.diag(R))
+        root = np.linalg.cholesky(np.linalg.inv(self._covariance([v for v, _ in runs]))).T
         out = []
-        for v, J in runs:
-            white, weighted = (
-                np.einsum("po,noi->npi", root, J),
-                np.einsum("po,noi->npi", inverse, J),
-            )
-            for o in range(len(R)):
-                own = (weighted[:, o] * size[o], v[:, o] / size[o])
-                out.append(Whitened(white[:, o], v @ root[o], coloured=own))
+        for i, (v, J) in enumerate(runs):
+            white = np.einsum("po,noi->npi", root, J)
+            for o in range(len(root)):
+                out.append(Whitened(white[:, o], v @ root[o], together=i))
         return out
 
     def _runs(self, theta: Array) -> list[tuple[Array, Array]]:

@@ -35,7 +35,7 @@ def plot(result: Identification) -> Figure:
             ax.plot(series.t, series.model, color="C0", linestyle="--", label="model")
             ax.plot(series.t, series.measured - series.model, color="C3", lw=0.8, label="residual")
             ax.set_title(maneuver + (" (held out)" if series.held_out else ""), fontsize="small")
-            ax.set_xlabel("t, s")
+            ax.set_xlabel("f, Hz" if series.over == "Hz" else "t, s")
             ax.set_ylabel(f"{coefficient} {result.labels.get(coefficient, '')}".strip())
             ax.grid(visible=True, alpha=0.3)
     drawn = [ax for row in axes for ax in row if ax.has_data()]

@@ -75,7 +75,10 @@ class Fit:
 
 @dataclass(frozen=True)
 class Series:
-    """Measured and modeled coefficient over one maneuver; (n,) each."""
+    """Measured and modeled coefficient or output over one maneuver; (n,) each.
+
+    over: unit of t: s, or Hz where amplitudes of transforms are compared and t is their frequency.
+    """
 
     coefficient: str
     maneuver: str
@@ -83,6 +86,7 @@ class Series:
     measured: Array
     model: Array
     held_out: bool
+    over: Literal["s", "Hz"] = "s"
 
 
 @dataclass(frozen=True)

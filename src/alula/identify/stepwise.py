@@ -13,8 +13,6 @@ comes last, because before that the residual is coloured by the very terms that 
 
 from __future__ import annotations
 
-from typing import Literal
-
 import numpy as np
 from scipy.special import fdtrc
 
@@ -22,14 +20,13 @@ from alula.base.arrays import Array
 from alula.base.coloured import coloured_covariance
 from alula.identify.structure import (
     SAME,
+    Action,
     Pool,
     Step,
     Structure,
     about_constants,
     orthonormal,
-    predicted_squared_error,
-    press,
-    r2_of,
+    step_at,
     without,
 )
 
@@ -45,15 +42,19 @@ def stepwise(pool: Pool, *, level: float = LEVEL, colour: bool = True) -> Struct
     tested = level / max(len(pool.names), 1)
     chosen: list[int] = []
     barred: set[int] = set()  # went out: do not come in again, so that the search ends
-    total, fixed = about_constants(pool)
-    steps = [_step(pool, chosen, "core", "", np.nan, total, fixed)]
+    about = about_constants(pool)
+
+    def step(members: list[int], action: Action, term: str, f: float) -> Step:
+        return step_at(pool, orthonormal(pool.columns(members)), about, action, term, f)
+
+    steps = [step(chosen, "core", "", np.nan)]
 
     def take_out(threshold: float, coloured: bool) -> None:
         while (leaving := _worst(pool, chosen, threshold, coloured)) is not None:
             i, f = leaving
             chosen.remove(i)
             barred.add(i)
-            steps.append(_step(pool, chosen, "out", pool.names[i], f, total, fixed))
+            steps.append(step(chosen, "out", pool.names[i], f))
 
     while True:
         entering = _best(pool, chosen, barred, tested)
@@ -61,12 +62,12 @@ def stepwise(pool: Pool, *, level: float = LEVEL, colour: bool = True) -> Struct
             why = f"no other candidate has a significant partial F (level {level:g} for all)"
             break
         j, f = entering
-        step = _step(pool, [*chosen, j], "in", pool.names[j], f, total, fixed)
-        if step.press >= steps[-1].press:
+        next_step = step([*chosen, j], "in", pool.names[j], f)
+        if next_step.press >= steps[-1].press:
             why = f"PRESS no longer falls with the best candidate, {pool.names[j]}"
             break
         chosen.append(j)
-        steps.append(step)
+        steps.append(next_step)
         take_out(LEAVE * tested, False)
     if colour:
         before = len(chosen)
@@ -74,21 +75,6 @@ def stepwise(pool: Pool, *, level: float = LEVEL, colour: bool = True) -> Struct
         if len(chosen) < before:
             why += f"; {before - len(chosen)} went out again by coloured standard errors"
     return Structure("stepwise", tuple(sorted(chosen)), tuple(steps), why)
-
-
-def _step(
-    pool: Pool,
-    chosen: list[int],
-    action: Literal["in", "out", "core"],
-    term: str,
-    f: float,
-    total: float,
-    fixed: int,
-) -> Step:
-    basis = orthonormal(pool.columns(chosen))
-    left = without(basis, pool.measured)
-    error = predicted_squared_error(left, total, fixed, basis.shape[1])
-    return Step(action, term, f, press(basis, pool.measured), error, r2_of(left, total))
 
 
 def partial_f(pool: Pool, basis: Array, column: Array, colour: bool) -> tuple[float, float]:

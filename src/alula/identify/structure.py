@@ -10,6 +10,7 @@ import numpy as np
 
 from alula.base.arrays import Array
 
+Action = Literal["in", "out", "core"]
 SAME = 1e-8  # squared length of what is left of a column, over its own: below it is not new
 
 
@@ -46,7 +47,7 @@ class Step:
     the model after the step, about what the constant terms explain.
     """
 
-    action: Literal["in", "out", "core"]
+    action: Action
     term: str
     partial_f: float
     press: float
@@ -119,3 +120,13 @@ def predicted_squared_error(left: Array, total: float, fixed: int, terms: int) -
     n = len(left)
     largest = total / (n - fixed)  # sigma_max squared, Eq. (36)
     return float(left @ left) / n + largest * terms / n
+
+
+def step_at(
+    pool: Pool, basis: Array, about: tuple[float, int], action: Action, term: str, f: float
+) -> Step:
+    """The step that led to the model of an orthonormal basis (n, r). about: `about_constants`."""
+    total, fixed = about
+    left = without(basis, pool.measured)
+    error = predicted_squared_error(left, total, fixed, basis.shape[1])
+    return Step(action, term, f, press(basis, pool.measured), error, r2_of(left, total))

@@ -2,7 +2,9 @@
 
 from alula.plan.amplitude import Limits, largest_amplitude, limits_of, outside
 from alula.plan.design import Design, design, planned
+from alula.plan.expected import expected
 from alula.plan.information import Prediction, predict
+from alula.plan.output_error_information import predict_output_error
 from alula.plan.widths import Timing, timing
 
 __all__ = [
@@ -11,10 +13,12 @@ __all__ = [
     "Prediction",
     "Timing",
     "design",
+    "expected",
     "largest_amplitude",
     "limits_of",
     "outside",
     "planned",
     "predict",
+    "predict_output_error",
     "timing",
 ]

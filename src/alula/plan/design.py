@@ -17,7 +17,8 @@ from alula.base.messages import BadInput, Message, refuse, warn
 from alula.base.project_messages import explain
 from alula.model import AeroModel
 from alula.plan.amplitude import Limits, largest_amplitude, limits_of, outside
-from alula.plan.information import Flown, Prediction, predict
+from alula.plan.expected import Method, expected
+from alula.plan.information import Prediction
 from alula.plan.widths import Timing, timing
 from alula.simulate.airframe import core_model
 from alula.simulate.fly import SimulatedFlight
@@ -73,7 +74,7 @@ class DesignedManeuver:
 
 @dataclass(frozen=True)
 class Design:
-    """tree: the plan file as tables. together: predictions by all maneuvers."""
+    """tree: the plan file as tables. together: predictions by all maneuvers, for `method`."""
 
     tree: Mapping[str, Any]
     trim: Trim
@@ -81,6 +82,7 @@ class Design:
     maneuvers: tuple[DesignedManeuver, ...]
     together: tuple[Prediction, ...]
     messages: tuple[Message, ...]
+    method: Method = "ee"
 
 
 def planned(tree: Mapping[str, Any]) -> Plan:
@@ -103,14 +105,16 @@ def design(
     sensors: Mapping[str, Any] | None = None,
     wind: Sequence[float] = (0.0, 0.0, 0.0),
     engines: Literal["modeled", "given"] = "modeled",
+    method: Method = "ee",
 ) -> Design:
     """Design maneuvers from level flight at V (m/s, true) and h (m) for an aircraft file.
 
     requests: (control, kind) for maneuvers of one input each; none: an elevator 3-2-1-1, and a
     bank to bank with a rudder doublet behind it, as far as the model has these controls. sensors:
     tables of the plan file; default ordinary flight-test instruments. engines: of the aircraft
-    file, or the trimmed thrust stays. Raises BadInput where the
-    condition does not trim, or a control is not in the model.
+    file, or the trimmed thrust stays. method: of identification, whose standard errors are
+    predicted. Raises BadInput where the condition does not trim, a control is not in the model, or
+    output error has no sensor to compare.
     """
     tree: dict[str, Any] = {
         "schema": "alula.plan/1",
@@ -140,17 +144,17 @@ def design(
     plan = planned(tree)
     formulas = formulas_of(plan, model)
     sigma = {n: plan.sensors[n].in_si(plan.sensors[n].sigma) for n in plan.sensors}
-    flown = [Flown(f.motion, frame.mass, frame.inertia) for _, _, f in done]
+
+    def tell(flights: Sequence[SimulatedFlight]) -> tuple[Prediction, ...]:
+        return expected(method, flights, frame, model, formulas, sigma)
+
     maneuvers = tuple(
-        DesignedManeuver(
-            table["id"], inputs, _reached(flight), predict([one], model, formulas, sigma)
-        )
-        for (table, inputs, flight), one in zip(done, flown, strict=True)
+        DesignedManeuver(table["id"], inputs, _reached(flight), tell([flight]))
+        for table, inputs, flight in done
     )
-    together = predict(flown, model, formulas, sigma)
-    return Design(
-        tree, trim, modes, maneuvers, together, (*limits.messages, *_small(maneuvers, craft))
-    )
+    together = tell([flight for _, _, flight in done])
+    said = (*limits.messages, *_small(maneuvers, craft))
+    return Design(tree, trim, modes, maneuvers, together, said, method)
 
 
 def _wanted(

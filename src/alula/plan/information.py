@@ -123,7 +123,7 @@ def _one(
         error = float("inf") if lost.any() else float(se[i])
         out.append(
             Prediction(
-                name, coefficient, value, error, _verdict(coefficient, name, value, error), tied
+                name, coefficient, value, error, verdict_of(coefficient, name, value, error), tied
             )
         )
     return out
@@ -228,7 +228,8 @@ def _slope(model: AeroModel, coefficient: str, variables: Mapping[str, Array], n
     return np.asarray((ends[0] - ends[1]) / (2.0 * h))
 
 
-def _verdict(coefficient: str, name: str, value: float, se: float) -> str:
+def verdict_of(coefficient: str, name: str, value: float, se: float) -> str:
+    """Whether a standard error that is expected tells the parameter: told, weak, not told."""
     typical = typical_magnitude(coefficient, name)
     if not np.isfinite(se) or (typical is not None and se > NOTHING * typical):
         return "not told"

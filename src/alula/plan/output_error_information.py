@@ -19,7 +19,7 @@ from alula.base.messages import refuse
 from alula.identify.measured_maneuver import MeasuredManeuver
 from alula.identify.output_error_problem import FlightProblem, Setting
 from alula.model import AeroModel, Reference, aero_model, parse
-from alula.plan.information import Prediction, _verdict
+from alula.plan.information import Prediction, verdict_of
 
 NO_INFORMATION = 1e-12  # of the scaled information's largest eigenvalue: rounding
 _MEMBER = 1e-6  # share of a direction without information above which a parameter belongs to it
@@ -87,6 +87,6 @@ def predict_output_error(
         )
         error = float("inf") if lost.any() else float(se[i])
         value, coefficient = model.params[name], problem.belongs[i]
-        verdict = _verdict(coefficient, name, value, error)
+        verdict = verdict_of(coefficient, name, value, error)
         out.append(Prediction(name, coefficient, value, error, verdict, tied))
     return tuple(out)

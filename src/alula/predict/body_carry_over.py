@@ -42,7 +42,7 @@ class CarryOver:
 def wing_body_lift(diameter: float, span: float) -> CarryOver:
     """Lift carried over between a wing at angle of attack and a round body, both at one angle.
 
-    Pitts, Nielsen, Kaattari 1957, NACA Report 1307, Eq. (14) and (21), from the slender-body
+    Pitts, Nielsen, Kaattari 1957, NACA Report 1307, from the slender-body
     solution of Spreiter 1950, NACA Report 962; used there for wings of any aspect ratio. diameter:
     m, at the wing; span: m, tip to tip, above it.
     """

@@ -61,7 +61,7 @@ def full_circle(polar: Polar, k: float, induced: float, aspect: float) -> Array:
 def _behind(
     alpha: Array, stall: float, at: tuple[float, float, float], aspect: float
 ) -> tuple[Array, Array, Array]:
-    """Lift, whole drag and moment at angles (n,) from `stall` to 180 deg; at: at `stall`."""
+    """Lift, whole drag and moment at angles (n,) from `stall` to 180 deg; at: those at `stall`."""
     most = plate_drag(aspect)
     s, c = np.sin(stall), np.cos(stall)
     A2 = (at[0] - most * s * c) * s / c**2

@@ -76,6 +76,11 @@ def times(*factors: Found) -> Found:
     return Found(value, hypot(*errors), _joined(factors, " x "), _notes(factors))
 
 
+def squared(x: Found) -> Found:
+    """The square; both factors err together."""
+    return replace(x, value=x.value**2, se=2.0 * abs(x.value) * x.se)
+
+
 def plus(*parts: Found) -> Found:
     """The sum; its error: the parts' own, as independent."""
     value = fsum(x.value for x in parts)

@@ -5,7 +5,7 @@ Polhamus's form: Lowry and Polhamus, NACA TN 3911, 1957, as taken up in USAF Dat
 
 from __future__ import annotations
 
-from math import cos, pi, sqrt, tan
+from math import pi, sqrt, tan
 
 from alula.predict.handbook import Found, Range, found, positive
 
@@ -55,9 +55,3 @@ def body_factor(diameter: float, span: float) -> Found:
         "body on wing, Roskam VI sec. 8.2; se 0.02, our judgment",
         (Range("body diameter over span", x, 0.0, 0.4),),
     )
-
-
-def simple_sweep(aspect: float, sweep_quarter: float) -> float:
-    """Lift slope of a swept wing over the same wing unswept (Toll and Queijo, NACA TN 1581)."""
-    c = cos(sweep_quarter)
-    return (aspect + 2.0) * c / (aspect + 2.0 * c)

@@ -56,11 +56,11 @@ class LiftingLine:
         n = np.arange(1, load.A.size + 1)
         return float(np.pi * self.aspect * (n * load.A**2).sum())
 
-    def center(self, load: Load) -> float:
-        """Center of the right half's lift, as a fraction of the half span."""
-        right = self.eta > 0.0
-        w = (self._circulation(load) * np.sin(self.theta))[right]
-        return float((w * self.eta[right]).sum() / w.sum())
+    def carried(self, load: Load, x: Array) -> float:
+        """Integral of the sections' lift times `x` (k,), as a coefficient."""
+        step = np.pi / (self.theta.size + 1)
+        arm = x * np.sin(self.theta) * self._circulation(load)
+        return float(2.0 * self.aspect * arm.sum() * step)
 
     def yaw(self, load: Load, other: Load) -> float:
         """Yawing moment coefficient of induced drag that `other` adds to the wing with `load`."""

@@ -98,7 +98,7 @@ def exposed_area(surface: LiftingSurface, bodies: Sequence[Body]) -> float:
 def wetted_area(surface: LiftingSurface, geometry: Geometry) -> float:
     """Both sides of the exposed area, with the contour's excess over the chord, m2.
 
-    Raymer, Aircraft Design, section 7.10: 1.977 + 0.52 t/c from t/c = 0.05 up, 2.003 below.
+    Raymer, Aircraft Design, on wetted areas: 1.977 + 0.52 t/c from t/c = 0.05 up, 2.003 below.
     """
     exposed = exposed_area(surface, geometry.bodies)
     t = float(np.mean([geometry.airfoils[s.airfoil].thickness for s in surface.sections]))

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import log10, pi, sqrt
+from math import log10, sqrt
 
 from alula.predict.handbook import Found, Range, found, positive
 
@@ -79,20 +79,6 @@ def body_form(length: float, diameter: float) -> float:
     positive("body's form factor", length=length, diameter=diameter)
     f = length / diameter
     return 1.0 + 60.0 / f**3 + 0.0025 * f
-
-
-def surface_wetted(exposed: float, thickness: float) -> float:
-    """Wetted area of both sides, m2 (Raymer ch. 12). exposed: planform outside the body, m2."""
-    if thickness < 0.05:
-        return 2.003 * exposed
-    return exposed * (1.977 + 0.52 * thickness)
-
-
-def body_wetted(length: float, diameter: float) -> float:
-    """Wetted area of a streamlined body, m2 (Torenbeek, Synthesis, 1982, appendix B)."""
-    f = length / diameter
-    fuller: float = (1.0 - 2.0 / f) ** (2.0 / 3.0)
-    return pi * diameter * length * fuller * (1.0 + 1.0 / f**2)
 
 
 def profile_drag(

@@ -5,9 +5,9 @@
 
    AlulaSeries.Times.uniform(start, step, n) | AlulaSeries.Times.of(Float64Array)
    new AlulaLink.Link()
-   new AlulaPlot.Plot(host, {panels: [{label, small, lines: [{name, style, y}],
+   new AlulaPlot.Plot(host, {over, panels: [{label, small, lines: [{name, style, y}],
                                        bands: [{name, half, center}]}]}, times, link)
-   `y`, `half` and `center` are Float32Arrays (center may be null); `host` holds a canvas. */
+   `over` is "Hz" where the abscissa is frequency; otherwise time. `y`, `half` and `center` are Float32Arrays (center may be null); `host` holds a canvas. */
 const AlulaPlot = (() => {
   const { Samples, ticks, format, readable, superscript } = AlulaSeries;
   const { soon, drawn } = AlulaLink;
@@ -19,6 +19,8 @@ const AlulaPlot = (() => {
       Object.assign(this, { host, times, link, inView: false, drag: null, fixed: null });
       this.canvas = host.querySelector("canvas");
       this.live = host.querySelector(".live");
+      this.over = spec.over === "Hz" ? { sign: "f", unit: "Hz", words: "frequency, Hz" }
+        : { sign: "t", unit: "s", words: "time in the log, s" };
       this.panels = spec.panels.map((p) => ({
         label: p.label,
         small: p.small,
@@ -321,12 +323,17 @@ const AlulaPlot = (() => {
     }
 
     values(p, k) {
-      const first = p === this.panels[0] ? [`t = ${format(this.times.at(k), Math.min(0.01, this.times.step))} s`] : [];
+      const first = p === this.panels[0] ? [this.where(k)] : [];
       return [
         ...first,
         ...p.lines.map((l) => `${l.name} ${readable(l.y.v[k])}`),
         ...p.bands.map((b) => `${b.name} ${readable(b.low.v[k])} \u2026 ${readable(b.high.v[k])}`),
       ];
+    }
+
+    where(k) {
+      const at = format(this.times.at(k), Math.min(0.01, this.times.step));
+      return `${this.over.sign} = ${at} ${this.over.unit}`;
     }
 
     timeTicks() {
@@ -345,7 +352,7 @@ const AlulaPlot = (() => {
       }
       c.textBaseline = "bottom";
       c.fillStyle = this.color.ink;
-      c.fillText("time in the log, s", (LEFT + this.width - RIGHT) / 2, height - 1);
+      c.fillText(this.over.words, (LEFT + this.width - RIGHT) / 2, height - 1);
     }
   }
 

@@ -15,6 +15,7 @@ from alula.report.figures import FigureStore, Survey
 from alula.report.html import Html, tag
 from alula.report.input import ReportInput
 from alula.report.numbers import rms
+from alula.report.sections.coefficients import group_of
 from alula.report.sections.reconstruction import misfit
 
 MOST_BYTES = 2_900_000  # of a page, which promises to stay under 3 MB
@@ -22,7 +23,7 @@ LEAST = 240  # points of a thinned figure: every fourth pixel of its width, or c
 _FRAME = 50_000  # style, scripts, head
 
 # In the order in which they are worth the room. Anchors of the page's sections are the keys.
-_PARTS = ("flown", "coefficients", "reconstruction")
+_PARTS = ("flown", "coefficients", "histories", "reconstruction")
 
 Unit = tuple[str, str]  # (part, group)
 
@@ -71,6 +72,7 @@ def left_out(report: ReportInput, figures: FigureStore, part: str) -> Iterable[H
 _WHY = {
     "flown": "in the order of the project",
     "coefficients": "first the held out ones, then those with the largest residuals",
+    "histories": "in the order of the project",
     "reconstruction": "first the held out ones, then those whose sensors fit worst",
 }
 
@@ -119,10 +121,12 @@ def _groups(report: ReportInput, part: str) -> list[str]:
         worst: dict[str, tuple[bool, float]] = {}
         for s in report.identification.series:
             spread = float(np.nanmax(s.measured) - np.nanmin(s.measured))
-            held, size = worst.get(s.maneuver, (False, 0.0))
+            held, size = worst.get(group_of(s), (False, 0.0))
             error = rms(s.measured - s.model) / (spread or 1.0)
-            worst[s.maneuver] = (s.held_out or held, max(size, error))
+            worst[group_of(s)] = (s.held_out or held, max(size, error))
         return sorted(worst, key=lambda m: (not worst[m][0], -worst[m][1]))
+    if part == "histories" and report.identification is not None:
+        return list(dict.fromkeys(h.maneuver for h in report.identification.histories))
     if part == "reconstruction" and report.reconstruction is not None:
         segments = sorted(
             report.reconstruction.segments,

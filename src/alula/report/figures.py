@@ -56,7 +56,10 @@ class Panel:
 
 @dataclass(frozen=True)
 class Figure:
-    """Panels over the times t (n,), s. note: a line of text below, held_out: marked as such."""
+    """Panels over the times t (n,), s. note: a line of text below, held_out: marked as such.
+
+    over: unit of t: s, or Hz where it is frequency; figures of one group have the same.
+    """
 
     title: str
     group: str
@@ -64,6 +67,7 @@ class Figure:
     panels: tuple[Panel, ...]
     note: str = ""
     held_out: bool = False
+    over: Literal["s", "Hz"] = "s"
 
 
 @dataclass(frozen=True)
@@ -128,6 +132,8 @@ class FigureStore:
             "t": self._times(figure.t, keep, gaps),
             "panels": [self._panel(panel, keep) for panel in figure.panels],
         }
+        if figure.over != "s":
+            figures["over"] = figure.over
         number = len(self._figures)
         self._figures.append(figures)
         kept = len(figure.t) if self.counting else None if keep is None else len(keep)
@@ -217,7 +223,10 @@ def _place(figure: Figure, number: int, kept: int | None) -> Html:
         note.append(f"Shown thinned: {kept} of {len(figure.t)} samples.")
     held_out = tag("span", "held out: not used in the fit", class_="tag") if figure.held_out else ""
     what = "; ".join(p.label for p in figure.panels)
-    over = f"{figure.t[0]:.1f} to {figure.t[-1]:.1f} s of the log"
+    low, high = float(figure.t[0]), float(figure.t[-1])
+    over = f"{low:.1f} to {high:.1f} s of the log"
+    if figure.over == "Hz":
+        over = f"{low:.3g} to {high:.3g} Hz"
     return tag(
         "figure",
         tag("figcaption", tag("strong", figure.title), " ", held_out),

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from alula.aircraft import Aircraft
 from alula.base.messages import Message
 from alula.flight import Maneuver, SourceFile
 from alula.identify.result import Identification
@@ -24,6 +25,7 @@ class ReportInput:
     cards: one per log, with its files and messages.
     provenance: what is needed to make the result again: hashes, versions, commit, instruction
     set, seed; a value may itself be a mapping. date: as it shall stand on the page.
+    shape: the aircraft whose geometry is drawn, where it has one.
     """
 
     name: str
@@ -37,6 +39,7 @@ class ReportInput:
     validation: Validation | None = None
     messages: tuple[Message, ...] = ()
     provenance: Mapping[str, Any] = field(default_factory=dict)
+    shape: Aircraft | None = None
 
     def files(self) -> tuple[SourceFile, ...]:
         """Every file that was read, once."""

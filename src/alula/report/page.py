@@ -12,6 +12,8 @@ from alula.report.html import Html, css_string, join, tag
 from alula.report.input import ReportInput
 from alula.report.sections.coefficients import coefficients
 from alula.report.sections.correlation import correlation
+from alula.report.sections.geometry import geometry, identified_neutral_point
+from alula.report.sections.histories import histories
 from alula.report.sections.log_card import log_cards
 from alula.report.sections.maneuvers import maneuvers
 from alula.report.sections.notes import messages, provenance
@@ -98,12 +100,19 @@ def _sections(report: ReportInput, figures: FigureStore) -> list[tuple[str, str,
         figures.part = "coefficients"
         fits = coefficients(report.identification, figures)
         found.append(("coefficients", "Coefficients: measured and model", fits))
+        if report.identification.histories:
+            figures.part = "histories"
+            over_time = histories(report.identification, figures)
+            found.append(("histories", "Estimates over time", over_time))
         found.append(("parameters", "Parameters", parameters(report.identification)))
         found.append(("correlation", "Correlation", correlation(report.identification)))
+    if report.shape is not None and report.shape.geometry is not None:
+        neutral = identified_neutral_point(report.shape, report.identification)
+        found.append(("geometry", "Geometry", geometry(report.shape, neutral)))
     found.append(("messages", "Messages", messages(report)))
     found.append(("provenance", "Provenance", provenance(report)))
     for k, (key, title, content) in enumerate(found):
-        if key in ("flown", "reconstruction", "coefficients"):
+        if key in ("flown", "reconstruction", "coefficients", "histories"):
             found[k] = (key, title, join([_HOW_TO, *left_out(report, figures, key), content]))
     return found
 

@@ -37,7 +37,7 @@
       lines: p.lines.map((l) => ({ ...l, y: values(l.y) })),
       bands: (p.bands || []).map((b) => ({ ...b, half: values(b.half), center: values(b.center) })),
     }));
-    return new AlulaPlot.Plot(host, { panels }, times(figure.t), link(figure.group));
+    return new AlulaPlot.Plot(host, { over: figure.over, panels }, times(figure.t), link(figure.group));
   });
   for (const l of links.values()) l.changed();
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from alula.identify.result import Identification, Series
 from alula.report.figures import Figure, FigureStore, Line, Panel
 from alula.report.html import Html, join, table, tag
-from alula.report.names import WORDS
-from alula.report.numbers import MISSING, number, percent, rms
+from alula.report.names import WORDS, unit_of
+from alula.report.numbers import MISSING, number, percent, rms, shown
 
 
 def coefficients(result: Identification, figures: FigureStore) -> Html:
@@ -64,20 +64,30 @@ def _coefficient(result: Identification, name: str, figures: FigureStore) -> Htm
     )
 
 
+def group_of(s: Series) -> str:
+    """The plots that it zooms with: its maneuver's, those over frequency by themselves."""
+    return s.maneuver if s.over == "s" else f"{s.maneuver}, {s.over}"
+
+
 def _figure(s: Series) -> Figure:
-    residual = s.measured - s.model
+    factor, unit = shown(unit_of(s.coefficient))
+    measured, model = factor * s.measured, factor * s.model
+    residual = measured - model
     size = rms(residual)
     return Figure(
         f"{s.coefficient} · {s.maneuver}",
-        s.maneuver,
+        group_of(s),
         s.t,
         (
             Panel(
-                f"{s.coefficient} (–)",
-                (Line("measured", s.measured, "measured"), Line("model", s.model, "model")),
+                f"{s.coefficient} ({unit})",
+                (Line("measured", measured, "measured"), Line("model", model, "model")),
             ),
-            Panel("residual (–)", (Line("measured − model", residual, "residual"),), small=True),
+            Panel(
+                f"residual ({unit})", (Line("measured − model", residual, "residual"),), small=True
+            ),
         ),
-        note=f"Residual rms {number(size, 3)}.",
+        note=f"Residual rms {number(size, 3)}" + (f" {unit}." if unit != "–" else "."),
         held_out=s.held_out,
+        over=s.over,
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 from alula.identify.result import Identification, Parameter
 from alula.report.html import Html, join, table, tag
@@ -15,6 +16,10 @@ _VERDICT = {
     "weak": ("caution", "weak"),
     "not_identifiable": ("bad", "not identifiable"),
 }
+_BIASED = (
+    "The method is biased: ‘Bias’ is what it is estimated to shift the value by; the interval "
+    "includes it, se does not. "
+)
 
 
 def parameters(result: Identification) -> Html:
@@ -24,10 +29,11 @@ def parameters(result: Identification) -> Html:
         [
             tag(
                 "p",
-                f"Method: {result.method}. ‘se’ includes colored residuals and the uncertainty of "
-                "the reconstruction; ‘plain se’ would hold if the residuals were white. The "
-                "picture shows the 95 % interval and the value beside zero (upright line), or "
-                "beside the truth (diamond) where that is known. Verdicts: ",
+                f"Method: {result.method}. ‘se’: {result.uncertainty}; ‘plain se’ would hold if "
+                "the residuals were white. "
+                + (_BIASED if any(p.bias is not None for p in result.parameters) else "")
+                + "The picture shows the 95 % interval and the value beside zero (upright line), "
+                "or beside the truth (diamond) where that is known. Verdicts: ",
                 mark("good", "ok"),
                 " resolved; ",
                 mark("caution", "weak"),
@@ -45,50 +51,43 @@ def parameters(result: Identification) -> Html:
 
 def _table(coefficient: str, members: list[Parameter]) -> Html:
     truth = any(p.truth is not None for p in members)
+    biased = any(p.bias is not None for p in members)
     words = f", {WORDS[coefficient]}" if coefficient in WORDS else ""
-    head = [
-        "Parameter",
-        "Value ± se",
-        "Unit",
-        "95 % interval",
-        "Zero and interval",
-        "se / value",
-        "Plain se",
-        "VIF",
-        "Verdict",
+    columns: list[tuple[str, bool, Callable[[Parameter], object]]] = [  # head, right, cell
+        ("Parameter", False, lambda p: tag("code", p.name)),
+        ("Value ± se", True, lambda p: plus_minus(p.value, p.se)),
+        *([("Bias", True, lambda p: number(p.bias, 2))] if biased else []),
+        ("Unit", False, lambda p: p.unit if p.unit not in ("", "1") else "–"),
+        ("95 % interval", True, lambda p: interval(*p.ci95)),
+        *([("Truth", True, lambda p: number(p.truth))] if truth else []),
+        (f"{'Truth ◇' if truth else 'Zero'} and interval", False, _picture),
+        ("se / value", True, _share),
+        ("Plain se", True, lambda p: number(p.se_white, 2)),
+        ("VIF", True, lambda p: number(p.vif, 3)),
+        ("Verdict", False, _verdict),
     ]
-    rows = []
-    for p in members:
-        row = _row(p)
-        if truth:
-            row.insert(4, number(p.truth) if p.truth is not None else MISSING)
-        rows.append(row)
-    if truth:
-        head.insert(4, "Truth")
-        head[head.index("Zero and interval")] = "Truth ◇ and interval"
-    right = (1, 3, 4, 6, 7, 8) if truth else (1, 3, 5, 6, 7)
     return table(
-        join([tag("code", coefficient), words]), head, rows, numeric=right, class_="dense whole"
+        join([tag("code", coefficient), words]),
+        [head for head, _, _ in columns],
+        [[cell(p) for _, _, cell in columns] for p in members],
+        numeric=[i for i, (_, right, _) in enumerate(columns) if right],
+        class_="dense whole",
     )
 
 
-def _row(p: Parameter) -> list[object]:
-    level, words = _VERDICT[p.verdict]
-    resolved = p.verdict != "not_identifiable"
-    verdict = [mark(level, words)]
+def _picture(p: Parameter) -> object:
+    return interval_picture(p.value, *p.ci95, p.truth) if p.verdict != "not_identifiable" else ""
+
+
+def _share(p: Parameter) -> str:
+    return percent(p.se / abs(p.value)) if p.value and math.isfinite(p.value) else MISSING
+
+
+def _verdict(p: Parameter) -> Html:
+    verdict = [mark(*_VERDICT[p.verdict])]
     if p.tied_to:
         verdict.append(tag("span", "tied to ", tag("code", combination(p)), class_="tied"))
-    return [
-        tag("code", p.name),
-        plus_minus(p.value, p.se),
-        p.unit if p.unit not in ("", "1") else "–",
-        interval(*p.ci95),
-        interval_picture(p.value, *p.ci95, p.truth) if resolved else "",
-        percent(p.se / abs(p.value)) if p.value and math.isfinite(p.value) else MISSING,
-        number(p.se_white, 2),
-        number(p.vif, 3),
-        join(verdict),
-    ]
+    return join(verdict)
 
 
 def combination(p: Parameter) -> str:
