@@ -60,9 +60,12 @@ void build(Strips* self, Vector reference, double CD_body, Vector center, Vector
     const auto vector = [&](std::size_t k) {
       return alula::Vec3<double>{strips(i, k), strips(i, k + 1), strips(i, k + 2)};
     };
-    alula::Strip<double> s{vector(0),     vector(3),
-                           vector(6),     strips(i, 9),
-                           strips(i, 10), strips(i, 11),
+    alula::Strip<double> s{vector(0),
+                           vector(3),
+                           vector(6),
+                           strips(i, 9),
+                           strips(i, 10),
+                           strips(i, 11),
                            {strips(i, 12), strips(i, 13), strips(i, 14)},
                            {strips(i, 15), strips(i, 16), strips(i, 17), strips(i, 18)}};
     if (!a.strips.push(s)) throw nb::value_error("at most 256 strips");

@@ -206,7 +206,8 @@ TEST(StripTheory, SwirlRollsRightAndYawsLeft) {
   f.radius = 0.6;
   const auto C = alula::strip_coefficients(a, f);
   // Lift 4.5 Omega y c dy over -R..R by 18 strips: mid-strips fall short by 1/(4 18^2); the squares
-  // of the angles, up to 0.012, are less. The fin stands in the slipstream too and is left out here.
+  // of the angles, up to 0.012, are less. The fin stands in the slipstream too and is left out
+  // here.
   const auto alone = alula::surface_loads(a, 0, f, 0.0).moment.x;
   EXPECT_NEAR(alone, 4.5 * 0.02 * 0.5 * 2 * 0.6 * 0.6 * 0.6 / 3, 1.5e-3 * alone);
   EXPECT_GT(C[3], 0);
@@ -225,9 +226,7 @@ TEST(StripTheory, NothingJumpsAsTheSlipstreamGrows) {
     f.radius = R;
     const double lift = -alula::strip_coefficients(a, f)[2];
     // The whole wing gains less than the pressure's (1 + wash)^2 times its lift over 3 m of radius.
-    if (R > 0.0015) {
-      EXPECT_LT(std::abs(lift - before), 4.0 * 0.5 * 0.001 / 3 * 2) << R;
-    }
+    if (R > 0.0015) { EXPECT_LT(std::abs(lift - before), 4.0 * 0.5 * 0.001 / 3 * 2) << R; }
     before = lift;
   }
 }
@@ -249,9 +248,9 @@ TEST(StripTheory, SlipstreamKeepsMomentumEnergyAndAngularMomentum) {
   const double rho = 1.2, R = 0.25, V = 12, thrust = 60, torque = 2.4;
   const auto s = alula::slipstream(V, thrust, torque, rho, R, 1.0);
   const double flux = rho * kPi * R * R * s.u1;
-  EXPECT_NEAR(flux * (s.U_i - V), thrust, 1e-9);                        // (2.4)
-  EXPECT_NEAR(0.5 * flux * s.Omega_i * s.R_i * s.R_i, torque, 1e-9);    // (2.5)
-  EXPECT_NEAR(kPi * s.R_i * s.R_i * s.U_i, kPi * R * R * s.u1, 1e-9);   // continuity
+  EXPECT_NEAR(flux * (s.U_i - V), thrust, 1e-9);                           // (2.4)
+  EXPECT_NEAR(0.5 * flux * s.Omega_i * s.R_i * s.R_i, torque, 1e-9);       // (2.5)
+  EXPECT_NEAR(kPi * s.R_i * s.R_i * s.U_i, kPi * R * R * s.u1, 1e-9);      // continuity
   EXPECT_NEAR(0.5 * flux * (s.U_i * s.U_i - V * V), thrust * s.u1, 1e-8);  // (2.7)
 }
 
@@ -264,8 +263,9 @@ TEST(StripTheory, SlopesAreThoseOfDifferences) {
   add_fin(a, fin, -3.1, 0.8, 0.4, 5);
   const double at[4] = {0.11, 0.07, 0.6, 0.45};  // alpha, beta, wash, radius
   const auto dual = [&](int i) { return D::variable(at[i], i); };
-  const StripFlow<D> f{dual(0), dual(1), {D(0.0), D(0.0), D(0.0)},
-                       {D(0.0), D(0.0), D(0.1), D(0.0)}, dual(2), D(0.5), dual(3)};
+  const StripFlow<D> f{
+      dual(0), dual(1), {D(0.0), D(0.0), D(0.0)}, {D(0.0), D(0.0), D(0.1), D(0.0)}, dual(2),
+      D(0.5),  dual(3)};
   const auto C = alula::strip_coefficients(a, f);
   for (int k = 0; k < 4; ++k) {
     const double h = 1e-6;
@@ -275,8 +275,8 @@ TEST(StripTheory, SlopesAreThoseOfDifferences) {
     std::array<double, 6> y[2];
     for (int side = 0; side < 2; ++side)
       y[side] = alula::strip_coefficients(
-          a, StripFlow<double>{x[side][0], x[side][1], {0, 0, 0}, {0, 0, 0.1, 0}, x[side][2], 0.5,
-                               x[side][3]});
+          a, StripFlow<double>{
+                 x[side][0], x[side][1], {0, 0, 0}, {0, 0, 0.1, 0}, x[side][2], 0.5, x[side][3]});
     for (unsigned j = 0; j < 6; ++j)
       EXPECT_NEAR(C[j].slope_of(k), (y[1][j] - y[0][j]) / (2 * h), 1e-7) << k << j;
   }

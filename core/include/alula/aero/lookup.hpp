@@ -124,15 +124,15 @@ constexpr S lookup(const Lookup<T>& table, const detail::Neighbors<S>& on_a,
                    const detail::Neighbors<S>& on_b, const detail::Neighbors<S>& on_c) {
   if (table.axes == 3 && table.interpolation == Interpolation::linear) {
     // Eight corners without a loop.
-    const T* p = table.values + (on_a.first * table.size[1] + on_b.first) * table.size[2] +
-                 on_c.first;
+    const T* p =
+        table.values + (on_a.first * table.size[1] + on_b.first) * table.size[2] + on_c.first;
     const T* q = p + table.size[1] * table.size[2];
     const int row = table.size[2];
     const S &w0 = on_c.weight[0], &w1 = on_c.weight[1];
-    const S near = on_b.weight[0] * (p[0] * w0 + p[1] * w1) +
-                   on_b.weight[1] * (p[row] * w0 + p[row + 1] * w1);
-    const S far = on_b.weight[0] * (q[0] * w0 + q[1] * w1) +
-                  on_b.weight[1] * (q[row] * w0 + q[row + 1] * w1);
+    const S near =
+        on_b.weight[0] * (p[0] * w0 + p[1] * w1) + on_b.weight[1] * (p[row] * w0 + p[row + 1] * w1);
+    const S far =
+        on_b.weight[0] * (q[0] * w0 + q[1] * w1) + on_b.weight[1] * (q[row] * w0 + q[row + 1] * w1);
     return on_a.weight[0] * near + on_a.weight[1] * far;
   }
   S sum(0);

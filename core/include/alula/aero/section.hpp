@@ -4,9 +4,9 @@
 
 namespace alula {
 
-// A view over the whole circle, -pi to pi in even steps, n values each (at least two), the caller's:
-// c_l with what the finite wing takes from it, c_d without induced drag, c_m about the quarter
-// chord.
+// A view over the whole circle, -pi to pi in even steps, n values each (at least two), the
+// caller's: c_l with what the finite wing takes from it, c_d without induced drag, c_m about the
+// quarter chord.
 template <class T>
 struct SectionTable {
   const T *c_l = nullptr, *c_d = nullptr, *c_m = nullptr;

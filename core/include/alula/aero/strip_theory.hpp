@@ -19,10 +19,10 @@ inline constexpr int kStripControls = 4;  // de da dr df
 // `normal` to its upper side (of a fin: the right one), both normal to the quarter-chord line.
 template <class T>
 struct Strip {
-  Vec3<T> point;         // of the quarter-chord line, mid-strip
+  Vec3<T> point;  // of the quarter-chord line, mid-strip
   Vec3<T> chord, normal;
-  T length, area;        // chord normal to the line, m; m2
-  T half_width;          // along the line, m
+  T length, area;  // chord normal to the line, m; m2
+  T half_width;    // along the line, m
   Flap<T> flap;
   T gain[kStripControls];  // deflection, trailing edge away from `normal`, over each control
 };
@@ -41,11 +41,12 @@ struct StripSurface {
 template <class T>
 struct StripAircraft {
   T S{1}, b{1}, c{1};
-  T CD_body{0};         // parasitic drag along the airspeed
-  Vec3<T> center{};     // center of gravity, from the moment reference: rates turn about it
-  Vec3<T> hub{};        // a point of the slipstream's axis, which is along x
-  T incidence{0};       // of the wing; for the downwash by angle
-  bool downwash_by_angle = false;  // gradient times alpha + incidence (his), else by the wing's lift
+  T CD_body{0};      // parasitic drag along the airspeed
+  Vec3<T> center{};  // center of gravity, from the moment reference: rates turn about it
+  Vec3<T> hub{};     // a point of the slipstream's axis, which is along x
+  T incidence{0};    // of the wing; for the downwash by angle
+  bool downwash_by_angle =
+      false;  // gradient times alpha + incidence (his), else by the wing's lift
   Bounded<StripSurface<T>, kMaxSurfaces> surfaces{};
   Bounded<Strip<T>, kMaxStrips> strips{};
 };
@@ -54,14 +55,15 @@ struct StripAircraft {
 template <class S>
 struct StripFlow {
   S alpha, beta;
-  Vec3<S> rates;     // 1/m: p/V, q/V, r/V
+  Vec3<S> rates;  // 1/m: p/V, q/V, r/V
   S controls[kStripControls];
-  S wash;            // (U_i - u_0)/V: excess of axial speed in the slipstream
-  S swirl;           // 1/m: Omega_i/V
-  S radius;          // m: R_i; 0: no slipstream
+  S wash;    // (U_i - u_0)/V: excess of axial speed in the slipstream
+  S swirl;   // 1/m: Omega_i/V
+  S radius;  // m: R_i; 0: no slipstream
 };
 
-// Over the dynamic pressure of the free stream and the area S, body axes; moments not yet over b, c.
+// Over the dynamic pressure of the free stream and the area S, body axes; moments not yet over b,
+// c.
 template <class S>
 struct StripLoads {
   Vec3<S> force{S(0), S(0), S(0)}, moment{S(0), S(0), S(0)};

@@ -144,8 +144,8 @@ constexpr void fill_slots(const TermTable& table, S* slots, const Lookup<T>* tab
       case Operation::ramp: out = select(a > S(step.knot), S(a - S(step.knot)), S(0)); break;
       case Operation::sign: out = select(a > S(0), S(1), select(a < S(0), S(-1), S(0))); break;
       case Operation::lookup:
-        out = looked_up.at(tables[step.table], static_cast<const S*>(slots), step.a, step.b,
-                           step.c);
+        out =
+            looked_up.at(tables[step.table], static_cast<const S*>(slots), step.a, step.b, step.c);
         break;
       case Operation::lift: out = lift(static_cast<const S*>(slots)); break;
     }

@@ -56,9 +56,9 @@ void add_stall(const FlightState<S>& x, const AircraftModel<T>& a, const S& sine
 }
 
 // What the slipstream of the first propeller has more of axial speed than the free stream, over V;
-// 0 where there is no propeller. Pusztai 2018, Eq. (2.10); where the blades brake it is left a fifth
-// of the axial speed, his lowest ratio, and in flow from behind the propeller blows as at rest.
-// w: rates as the engines take them.
+// 0 where there is no propeller. Pusztai 2018, Eq. (2.10); where the blades brake it is left a
+// fifth of the axial speed, his lowest ratio, and in flow from behind the propeller blows as at
+// rest. w: rates as the engines take them.
 template <class S, class T>
 S wash(const FlightState<S>& x, const AircraftModel<T>& a, const Vec3<S>& v_air, const Vec3<S>& w,
        const S& density, const S& V) {
