@@ -31,3 +31,4 @@ void bind_recursive(nb::module_& m);
 void bind_output_error(nb::module_& m);
 void bind_vortex_lattice(nb::module_& m);
 void bind_propellers(nb::module_& m);
+void bind_strip(nb::module_& m);

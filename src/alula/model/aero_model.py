@@ -111,6 +111,17 @@ class AeroModel:
                 do="Identify the drag as '1 + alpha + alpha^2' for this export.",
             )
 
+    def check_without_wash(self, consumer: str) -> None:
+        """Raise BadInput where a term uses the slipstream's wash: `consumer` cannot know it."""
+        if any("wash" in f.variables for _, term in self.terms for f in term.factors):
+            raise refuse(
+                "wash_in_model",
+                where=f"aerodynamic model '{self.name}'",
+                expected=f"terms without the propeller's slipstream for {consumer}",
+                found="the variable 'wash'",
+                do="Export the tables for the flight computer, or a model without propwash.",
+            )
+
     @property
     def needs_lift(self) -> bool:
         """Whether the drag's terms use the lift coefficient."""

@@ -37,6 +37,7 @@ inline void base_slots(const VariationalPlan<axes>& plan, const MotionState<L, M
   for (int i = 0; i < 5; ++i)
     if (plan.uses[kDe + i]) slots[kDe + i] = A(u[kInControls + i]);
   if (plan.uses[kMach]) slots[kMach] = A(u[kInSlowness] * s.V);
+  if (plan.uses[kWash]) slots[kWash] = A(0.0);  // a maneuver does not record it
 }
 
 // The directions as rows of slopes: a seed is added whole, since an element put into a register
