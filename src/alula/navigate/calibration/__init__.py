@@ -1,0 +1,1 @@
+"""Calibration of accelerometer, gyro and magnetometer on the bench, and their noise."""
