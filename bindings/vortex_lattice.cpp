@@ -37,7 +37,7 @@ Result vortex_lattice(Matrix vertices, Integers row_start, Integers row_surface,
                       Cube normal_rate, Vector parity, Integers mirror, int right, int center,
                       Integers strip, Matrix strip_first, Matrix strip_last, Matrix strip_middle,
                       double alpha, double beta, double mach, Vector rate, Vector point,
-                      Vector reference, double core) {
+                      Vector reference, double core, bool turning) {
   Lattice a;
   const std::size_t n = control.shape(0), strips = strip_first.shape(0);
   if (n < 1 || n > static_cast<std::size_t>(kMaxPanels))
@@ -84,7 +84,7 @@ Result vortex_lattice(Matrix vertices, Integers row_start, Integers row_surface,
     return Vector3d(x.x, x.y, x.z);
   };
   const Vector3d sizes = three(reference, "reference: expected S, b, c");
-  at.alpha = alpha, at.beta = beta, at.mach = mach, at.core = core;
+  at.alpha = alpha, at.beta = beta, at.mach = mach, at.core = core, at.turning = turning;
   at.rate = three(rate, "rate: expected phat, qhat, rhat");
   at.point = three(point, "point: expected 3 numbers");
   at.S = sizes[0], at.b = sizes[1], at.c = sizes[2];
@@ -128,7 +128,7 @@ void bind_vortex_lattice(nb::module_& m) {
         nb::arg("mirror"), nb::arg("right"), nb::arg("center"), nb::arg("strip"),
         nb::arg("strip_first"), nb::arg("strip_last"), nb::arg("strip_middle"), nb::arg("alpha"),
         nb::arg("beta"), nb::arg("mach"), nb::arg("rate"), nb::arg("point"), nb::arg("reference"),
-        nb::arg("core"),
+        nb::arg("core"), nb::arg("turning"),
         "Loads of a lattice and their derivatives to alpha, beta, phat, qhat, rhat and controls, "
         "body axes; see core/host/include/alula/host/vortex_lattice.hpp.");
   m.def("lattice_factor_time", &factor_time, nb::arg("n"),

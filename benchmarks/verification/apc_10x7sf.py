@@ -103,7 +103,7 @@ def check(quick: bool = False) -> tuple[str, bool]:
         f"elements, not fitted, APC's geometry, all {len(test.J)} values: CT within "
         f"{100 * away:.1f} % of the largest, CP {100 * away_CP:.1f} % ({windmill} values in the "
         f"model's windmill); with UIUC's photographed geometry CT {100 * photographed:.0f} %; "
-        "polar and geometry chosen knowing this test, with six plausible polars 7 to 15 % and 14 to "
+        "polar and geometry chosen knowing this test, six plausible polars 7 to 15 % and 14 to "
         "22 %",
         holds,
     )

@@ -113,6 +113,11 @@ def test_a_resolution_out_of_reason_is_refused() -> None:
         table_grid(0.1)
 
 
+def test_exporters_that_know_no_slipstream_say_so(tables: AeroModel) -> None:
+    with pytest.raises(BadInput, match=r"DAVE-ML.*'wash'"):
+        tables.check_without_wash("DAVE-ML")
+
+
 def test_a_header_needs_a_name(tables: AeroModel) -> None:
     with pytest.raises(BadInput, match="ARM-Hawk"):
         table_header(tables, "ARM-Hawk")

@@ -361,6 +361,7 @@ def test_bad_shapes_are_refused_by_name() -> None:
         ({"panels": {"wing": (200, 200)}}, "too_many_panels"),
         ({"spacing": "sine"}, "lattice_option"),
         ({"core": -1.0}, "lattice_option"),
+        ({"wake": "free"}, "lattice_option"),
         ({"deflections": {"throttle": 0.1}}, "unknown_control"),
         ({"deflections": {"de": np.inf}}, "deflection"),
         ({"reference": Reference(0.0, 1.0, 1.0)}, "reference"),
@@ -391,6 +392,21 @@ def test_a_wake_through_panels_is_said() -> None:
     with pytest.raises(BadInput, match="wake_in_panel"):
         vortex_lattice(with_tail(1, 1.0), reference, point)
     vortex_lattice(with_tail(1, 1.0), reference, point, core=0.1)
+
+
+def test_a_held_wake_differs_only_with_load() -> None:
+    shape, reference, point = light_airplane()
+    flat = rectangle(), *unit()
+    turning, held = (vortex_lattice(*flat, wake=w).derivatives() for w in ("turning", "held"))
+    assert turning == held
+    # The wake of the wing sweeps over tail and fin; on the wing alone it is far from the panels.
+    turning, held = (
+        vortex_lattice(shape, reference, point, alpha=0.1, wake=w).derivatives()
+        for w in ("turning", "held")
+    )
+    assert abs(turning["Cm_alpha"] - held["Cm_alpha"]) > 0.01
+    for name in ("CL_q", "Cm_de", "Cl_p", "Cn_dr"):
+        assert turning[name] == held[name], name
 
 
 def _warned(messages: tuple[Any, ...]) -> str:

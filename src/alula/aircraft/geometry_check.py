@@ -24,6 +24,18 @@ def check_geometry(shape: Geometry, file: AircraftFile, path: Path) -> tuple[Mes
     """What was noticed; raises BadInput with a message for each thing that cannot be."""
     where = f"{path}, geometry"
     errors = shape_errors(shape, where)
+    engines = [engine.name for engine in file.engines]
+    for name in shape.blades:
+        if name not in engines:
+            errors.append(
+                _error(
+                    "unknown_engine",
+                    f"{where}.blades.{name}",
+                    "the name of an engine: " + (", ".join(engines) or "the file has none"),
+                    f"'{name}'",
+                    "Name the table after the engine whose propeller it is.",
+                )
+            )
     if errors:
         raise BadInput(*errors)
     return (*_unmoved(shape, file, where), *_reference(shape, file, where))
@@ -39,18 +51,6 @@ def shape_errors(shape: Geometry, where: str) -> list[Message]:
         errors += _spans(surface, f"{where}.surfaces.{surface.name}.controls")
     for body in shape.bodies:
         errors += _body(body, f"{where}.bodies.{body.name}")
-    engines = [engine.name for engine in file.engines]
-    for name in shape.blades:
-        if name not in engines:
-            errors.append(
-                _error(
-                    "unknown_engine",
-                    f"{where}.blades.{name}",
-                    "the name of an engine: " + (", ".join(engines) or "the file has none"),
-                    f"'{name}'",
-                    "Name the table after the engine whose propeller it is.",
-                )
-            )
     if not errors:  # overlaps of a surface that is none would only repeat what was said
         errors += _together(shape.surfaces, f"{where}.surfaces")
     return errors

@@ -9,6 +9,7 @@ from typing import NoReturn
 import typer
 
 from alula.base.messages import refuse
+from alula.cli.calibrate import calibrate
 from alula.cli.check import check
 from alula.cli.compare import compare
 from alula.cli.contract import Command
@@ -34,6 +35,7 @@ app = typer.Typer(
 COMMANDS = (
     new,
     check,
+    calibrate,
     identify,
     compare,
     plan,

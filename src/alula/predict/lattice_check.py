@@ -16,7 +16,8 @@ from alula.predict.panels import CONTROLS, Panels
 
 MACH_SAID, MACH_LIMIT = 0.6, 0.8  # Prandtl-Glauert is for flow without shocks
 ALPHA_SAID, ALPHA_LIMIT = np.radians(15.0), np.radians(45.0)  # attached flow
-_NEAR, _IN = 0.05, 1e-4  # of a strip's width: a wake that near spoils the strip; makes it singular
+# Of a strip's width: a wake that near spoils the strip; its turning spoils derivatives; singular.
+_NEAR, _NEAR_TURNING, _IN = 0.05, 0.25, 1e-4
 
 
 def check_shape(geometry: Geometry) -> None:
@@ -154,10 +155,11 @@ def check_deflections(deflections: Mapping[str, float]) -> None:
             )
 
 
-def wakes_near(panels: Panels, stream: Array, core: float) -> tuple[Message, ...]:
+def wakes_near(panels: Panels, stream: Array, core: float, *, turning: bool) -> tuple[Message, ...]:
     """A warning for each pair of surfaces of which one's wake runs into the other's panels.
 
-    stream: (3, 3), the wind axes in body axes (rows: along the stream, right, up). Raises BadInput
+    stream: (3, 3), the wind axes in body axes (rows: along the stream, right, up). turning: the
+    derivatives have the wake's turning, which counts where something is loaded. Raises BadInput
     where a control point lies in a trailing leg: its velocity is infinite without a core.
     """
     if core > 0.0:
@@ -168,25 +170,26 @@ def wakes_near(panels: Panels, stream: Array, core: float) -> tuple[Message, ...
     apart = np.hypot(points[:, None, 1] - ends[None, :, 1], points[:, None, 2] - ends[None, :, 2])
     other = (panels.strip_surface[:, None] != of) & (points[:, None, 0] > ends[None, :, 0])
     near = np.where(other, apart / panels.strip_width[:, None], np.inf)
-    return tuple(_wake_messages(panels, near, of))
+    loaded = bool(np.any(np.abs(panels.normal @ stream[0]) > 1e-9))
+    return tuple(_wake_messages(panels, near, of, _NEAR_TURNING if turning and loaded else _NEAR))
 
 
-def _wake_messages(panels: Panels, near: Array, of: Array) -> Iterator[Message]:
-    if near.min() >= _NEAR:
+def _wake_messages(panels: Panels, near: Array, of: Array, allowed: float) -> Iterator[Message]:
+    if near.min() >= allowed:
         return
     for i, name in enumerate(panels.surfaces):
         for j, source in enumerate(panels.surfaces):
             pair = near[np.ix_(panels.strip_surface == i, of == j)]
             least = float(pair.min()) if pair.size else np.inf
-            if least >= _NEAR:
+            if least >= allowed:
                 continue
             say = {
                 "where": f"vortex_lattice, surfaces '{source}' and '{name}'",
-                "expected": f"trailing legs of '{source}' at least {_NEAR:g} of a strip's width "
+                "expected": f"trailing legs of '{source}' at least {allowed:g} of a strip's width "
                 f"from the control points of '{name}'",
                 "found": f"{least:.2g} of it",
                 "do": "Change the number of strips so that those of the two surfaces fall "
-                "together, or ask for a vortex core between surfaces.",
+                "together, hold the wake, or ask for a vortex core between surfaces.",
             }
             if least < _IN:
                 raise refuse("wake_in_panel", **say)

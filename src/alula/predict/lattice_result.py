@@ -57,6 +57,7 @@ class LatticeResult:
     core: float
     deflections: Mapping[str, float]
     spacing: str
+    wake: str
     columns: tuple[str, ...]
     body_coefficients: Array
     body_derivatives: Array
@@ -131,6 +132,7 @@ class LatticeResult:
             "mach": f"{self.mach:g}",
             "moment_reference_m": f"{x:.6g}, {y:.6g}, {z:.6g} (body axes from the datum)",
             "panels": f"{mesh}; {self.spacing}",
+            "wake": self.wake,
             "core_m": f"{self.core:g}",
         }
         for name, angle in self.deflections.items():

@@ -8,6 +8,7 @@ core/host/include/alula/host/vortex_lattice.hpp: one factorization, exact deriva
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Literal
 
 import numpy as np
 
@@ -29,7 +30,9 @@ from alula.predict.lattice_check import (
 from alula.predict.lattice_result import LatticeResult, SpanLoad
 from alula.predict.panels import Panels, make_panels
 
+Wake = Literal["turning", "held"]
 SPACINGS: tuple[Spacing, ...] = ("uniform", "cosine")
+WAKES: tuple[Wake, ...] = ("turning", "held")
 _DRAGS_APART = 0.2  # of the induced drag: near field and far field then contradict each other
 _LIFTING = 0.1  # CL from which on the Oswald factor is that of the condition's own load
 
@@ -46,6 +49,7 @@ def vortex_lattice(
     panels: Mapping[str, tuple[int, int]] | None = None,
     spacing: Spacing = "uniform",
     core: float | None = None,
+    wake: Wake = "turning",
     symmetry: bool = True,
 ) -> LatticeResult:
     """Loads at one condition and their derivatives to alpha, beta, p, q, r and every control.
@@ -55,8 +59,10 @@ def vortex_lattice(
     where derivatives are taken; zero where absent. panels: (chordwise, spanwise of the half) by
     surface, in place of the geometry's own; at most core.LATTICE_PANELS panels in all. spacing:
     of the panels along chord and span, 'uniform' or 'cosine'. core: m, radius of a vortex core
-    between different surfaces; None: none. symmetry: False solves both halves even where one would
-    do. Raises BadInput for a shape, mesh or condition that the method cannot take.
+    between different surfaces; None: none. wake: 'turning' with alpha and beta, so that derivatives
+    are those of whole solutions; 'held' where it is, as other codes differentiate: smoother where
+    the wake of a loaded wing passes close to a tail. symmetry: False solves both halves even where
+    one would do. Raises BadInput for a shape, mesh or condition that the method cannot take.
     """
     moved = dict(deflections or {})
     point = np.asarray(point, dtype=np.float64)
@@ -67,12 +73,12 @@ def vortex_lattice(
     mesh = {s.name: s.panels for s in geometry.surfaces}
     mesh.update({name: (int(m), int(s)) for name, (m, s) in (panels or {}).items()})
     check_mesh(geometry, mesh)
-    if spacing not in SPACINGS or numbers["core"] < 0.0:
+    if spacing not in SPACINGS or wake not in WAKES or numbers["core"] < 0.0:
         raise refuse(
             "lattice_option",
-            where="vortex_lattice, spacing and core",
-            expected=f"spacing one of {SPACINGS}, core a radius in m or None",
-            found=f"{spacing!r}, {core!r}",
+            where="vortex_lattice, spacing, wake and core",
+            expected=f"spacing one of {SPACINGS}, wake of {WAKES}, core a radius in m or None",
+            found=f"{spacing!r}, {wake!r}, {core!r}",
             do="Correct it.",
         )
     on_plane = abs(point[1]) <= 1e-9 * reference.b
@@ -82,7 +88,7 @@ def vortex_lattice(
     # Looked at again: the pieces between sections and controls may ask for more strips.
     check_mesh(geometry, lattice.mesh)
     said += _finer(mesh, lattice.mesh)
-    said += wakes_near(lattice, _stream(alpha, beta), numbers["core"])
+    said += wakes_near(lattice, _stream(alpha, beta), numbers["core"], turning=wake == "turning")
     found = compiled.vortex_lattice(
         lattice.vertices, lattice.row_start, lattice.row_surface,
         lattice.trailing, lattice.row_trailing, lattice.control, lattice.middle,
@@ -91,6 +97,7 @@ def vortex_lattice(
         lattice.strip_wash,
         alpha, beta, mach, np.zeros(3), point,
         np.array([reference.S, reference.b, reference.c]), numbers["core"],
+        wake == "turning",
     )  # fmt: skip
     coefficients, derivatives = found["coefficients"][0], found["derivatives"].T
     if not (np.all(np.isfinite(coefficients)) and np.all(np.isfinite(derivatives))):
@@ -103,7 +110,7 @@ def vortex_lattice(
         )
     said += assumed_zero_lift(geometry)
     result = _result(
-        lattice, reference, point, numbers, moved, spacing, found, coefficients, derivatives
+        lattice, reference, point, numbers, moved, (spacing, wake), found, coefficients, derivatives
     )
     said += _drags(result)
     return result.with_messages((_conventions(result), *said))
@@ -121,7 +128,7 @@ def _result(
     point: Array,
     numbers: Mapping[str, float],
     deflections: Mapping[str, float],
-    spacing: str,
+    options: tuple[str, str],
     found: Mapping[str, Array],
     coefficients: Array,
     derivatives: Array,
@@ -145,7 +152,8 @@ def _result(
         mach=numbers["mach"],
         core=numbers["core"],
         deflections=dict(deflections),
-        spacing=spacing,
+        spacing=options[0],
+        wake=options[1],
         columns=(*MOTIONS, *lattice.controls),
         body_coefficients=frozen(coefficients),
         body_derivatives=frozen(derivatives),
@@ -238,8 +246,8 @@ def _conventions(result: LatticeResult) -> Message:
         "rhat = r b/2V; 'stability': forces, moments and rates along stability axes, 'model': "
         "CD, CY, CL with moments and rates along body axes, 'body': all along body axes; angles "
         "and deflections per rad unless a name ends in _per_deg; positive deflections are trailing "
-        "edge down (da: right half; dr: left); trailing legs along the stream turn with alpha "
-        f"and beta; {'one half solved' if result.symmetric else 'both halves solved'}; "
+        f"edge down (da: right half; dr: left); wake along the stream, {result.wake} as alpha and "
+        f"beta change; {'one half solved' if result.symmetric else 'both halves solved'}; "
         + (f"vortex core of {result.core:g} m between surfaces" if result.core else "no core"),
         do="Convert other sources' values before comparing.",
     )

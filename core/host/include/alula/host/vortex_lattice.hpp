@@ -161,7 +161,8 @@ inline Loads solve(const Lattice& lattice, const Condition& at) {
   Loads out;
   detail::Stream stream(wind, at, wind.control_arm.leftCols(solved), columns);
   out.circulation = systems.circulation(detail::through(stream.flow, wind.normal), steady);
-  stream.add(turned(lattice, wind, wind.control, solved, out.circulation), wind.cos_beta);
+  if (at.turning)
+    stream.add(turned(lattice, wind, wind.control, solved, out.circulation), wind.cos_beta);
   Points there = stream.flow;
   if (controls > 0)
     there +=
@@ -178,7 +179,8 @@ inline Loads solve(const Lattice& lattice, const Condition& at) {
   }
 
   detail::Stream at_bound(wind, at, wind.arm.leftCols(solved), columns);
-  at_bound.add(turned(lattice, wind, wind.middle, solved, out.circulation), wind.cos_beta);
+  if (at.turning)
+    at_bound.add(turned(lattice, wind, wind.middle, solved, out.circulation), wind.cos_beta);
   const MatrixXd wash = induced(lattice, wind, wind.middle, solved, circulation);
   const Points flow = at_bound.flow + detail::three_rows(wash, 0, circulation.cols());
   const detail::UnitLoads unit(lattice, wind);

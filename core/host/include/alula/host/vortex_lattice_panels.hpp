@@ -50,7 +50,8 @@ struct Condition {
   Vector3d rate = Vector3d::Zero();   // hats, body axes
   Vector3d point = Vector3d::Zero();  // moments and rotations are about it
   double S = 1.0, b = 1.0, c = 1.0;
-  double core = 0.0;  // radius of the vortex core between different surfaces, m; 0: none
+  double core = 0.0;    // radius of the vortex core between different surfaces, m; 0: none
+  bool turning = true;  // the wake turns with alpha and beta; false: derivatives at a held wake
 };
 
 // The lattice in wind axes: x along the stream (aft), y to the right, z up; x of vertices and
