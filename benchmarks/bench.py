@@ -148,11 +148,19 @@ def simulation_rows(rounds: int = ROUNDS) -> list[dict[str, Any]]:
     return simulation_speed.bench_rows(rounds)
 
 
+def lattice_rows(rounds: int = ROUNDS) -> list[dict[str, Any]]:
+    """The vortex lattice beside the factorization of its full matrix."""
+    from verification import lattice_speed
+
+    return [lattice_speed.bench_row(rounds)]
+
+
 SUBJECTS: dict[str, Callable[[int], list[dict[str, Any]]]] = {
     "path filters": filter_rows,
     "output error": output_error_rows,
     "recursive least squares": recursive_rows,
     "simulator": simulation_rows,
+    "vortex lattice": lattice_rows,
 }
 NEED_BASELINES = ("path filters", "output error")
 
