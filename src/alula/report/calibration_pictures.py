@@ -93,7 +93,7 @@ def length_bars(sensor: SensorCalibration) -> Html:
         100.0 * (np.linalg.norm(v[turned], axis=1) / length - 1.0)
         for v in (sensor.raw, sensor.calibrated)
     ]
-    top = 1.1 * max(float(np.nanmax(np.abs(p))) for p in pairs)
+    top = 1.1 * float(np.nanmax(np.abs(np.concatenate(pairs))))
     width, height, left = 660.0, 190.0, 46.0
     pitch = (width - left - 8) / len(length)
     zero = height / 2

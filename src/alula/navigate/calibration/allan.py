@@ -18,7 +18,7 @@ from alula.base.arrays import Array
 
 PER_OCTAVE = 1  # averaging times; closer ones repeat one another
 LONGEST = 8  # windows of the longest averaging time that the record must hold
-POINTS = 12000  # frequencies of the integrals: 1 % of the covariance, which suffices
+POINTS = 16000  # frequencies of the integrals: 1 % of the covariance, which suffices
 
 
 def averaging_lengths(n: int) -> Array:
@@ -38,8 +38,8 @@ def allan_variance(y: Array, lengths: Array) -> Array:
 
 
 def frequencies(n: int) -> Array:
-    """(POINTS,) cycles per sample, evenly in the logarithm, from a tenth of 1/n to one half."""
-    return np.geomspace(0.1 / n, 0.5, POINTS)
+    """(POINTS,) cycles per sample, evenly in the logarithm, from 0.001/n to one half."""
+    return np.geomspace(1e-3 / n, 0.5, POINTS)
 
 
 def transfer(lengths: Array, f: Array) -> Array:

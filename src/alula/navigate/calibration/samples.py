@@ -11,6 +11,7 @@ from alula.base.messages import Message, refuse, warn
 MOST_LOST = 0.5  # of all samples: beyond, the recording is no recording
 LEVELS = 50  # distinct readings, below which a channel is too coarse to be judged
 SHARED = 5  # samples at the same extreme reading
+REST = 0.25  # of the span, within which of the median an extreme is the reading at rest
 OVER = 3.0  # times as many there as at the reading next to it: noise never does that
 
 
@@ -20,7 +21,10 @@ def at_limit(readings: Array) -> NDArray[np.bool_]:
     levels, count = np.unique(readings[np.isfinite(readings)], return_counts=True)
     if len(levels) < LEVELS:
         return stuck
+    middle, span = float(np.nanmedian(readings)), float(levels[-1] - levels[0])
     for end, beside in ((0, 1), (-1, -2)):
+        if abs(levels[end] - middle) < REST * span:
+            continue  # turned one way only, the sensor rests at its least reading
         if count[end] >= SHARED and count[end] > OVER * count[beside]:
             stuck |= readings == levels[end]
     return stuck
