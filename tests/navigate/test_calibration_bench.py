@@ -96,6 +96,11 @@ def test_too_few_and_useless_positions_are_refused() -> None:
         calibrate_accelerometer(f[:5], G, CUBE[:5])
     with pytest.raises(BadInput, match="no_usable_samples"):
         calibrate_accelerometer(np.full((18, 3), np.nan), G)
+    with pytest.raises(BadInput, match="no_usable_samples"):
+        calibrate_accelerometer(np.full((18, 3), 1e300), G)
+    for dead in (np.zeros((18, 3)), np.ones((18, 3))):
+        with pytest.raises(BadInput, match="dead_sensor"):
+            calibrate_accelerometer(dead, G, CUBE)
     with pytest.raises(BadInput, match="bad_directions"):
         calibrate_accelerometer(f, G, CUBE[:4])
     with pytest.raises(BadInput, match="bad_directions"):
@@ -205,6 +210,8 @@ def test_bad_turns_are_refused() -> None:
     two = Turns(t.rate[:2], t.force[:2], t.time[:2], t.angle[:2], None)
     with pytest.raises(BadInput, match="too_few_turns"):
         calibrate_gyro(two)
+    with pytest.raises(BadInput, match="dead_sensor"):
+        calibrate_gyro(Turns(0.0 * t.rate, t.force, t.time, t.angle, t.axis))
     rate = t.rate.copy()
     rate[4, 2] = np.nan
     with pytest.raises(BadInput, match=r"turn 5.*not_finite"):
