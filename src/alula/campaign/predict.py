@@ -16,7 +16,7 @@ from alula.base.messages import BadInput, Message, refuse, warn
 from alula.core import core
 from alula.model import Reference
 from alula.predict.axes import along
-from alula.predict.combine import combine
+from alula.predict.combine import FLOOR, SIZE, combine
 from alula.predict.derivatives import Derivatives
 from alula.predict.flow import Flow
 from alula.predict.lattice_and_bodies import lattice_and_bodies
@@ -32,6 +32,7 @@ from alula.predict.vortex_lattice import Wake, vortex_lattice
 METHODS = ("combined", "lattice", "semi", "bodies", "strip")
 V = 50.0  # m/s, where the file has no envelope
 STUDIED = 2500  # panels of the finest mesh up to which a mesh study costs less than a second
+_UNSETTLED = 0.5  # of the value, beyond which the mesh's error is warned of
 _OF_LIFT = ("CY_p", "Cl_r", "Cn_p", "Cn_da")  # as in `lattice_and_bodies`
 _DIHEDRAL_OF_LIFT = 0.05  # of CL: what sweep and tips add to Cl_beta, as in the handbook's error
 
@@ -175,8 +176,30 @@ def _lattice(
     finest = result.panels.count * max(FACTORS) ** 2
     if asked.study or (asked.study is None and finest <= STUDIED):
         study = mesh_study(shape, reference, plane.reference_point, **options)
-        return study, study.result
+        return study, study.result.with_messages((*study.result.messages, *_coarse(study)))
     return None, result
+
+
+def _coarse(study: MeshStudy) -> list[Message]:
+    """A warning of derivatives that this mesh, and finer ones, do not settle."""
+    lost = [
+        f"{n} {v[0]:.3g} +- {study.error[n]:.2g}"
+        for n, v in study.values.items()
+        if study.error[n] > max(_UNSETTLED * abs(float(v[0])), FLOOR * SIZE.get(n, 0.0))
+        and n in SIZE
+    ]
+    if not lost:
+        return []
+    return [
+        warn(
+            "mesh_not_converged",
+            where="vortex_lattice, mesh study",
+            expected=f"an error of the mesh below {_UNSETTLED:.0%} of the value",
+            found=", ".join(lost),
+            do="The error is in their standard deviation. Let the strips of wing and tailplane "
+            "fall together (--panels), or move one of them out of the other's wake.",
+        )
+    ]
 
 
 def _loads(

@@ -16,12 +16,15 @@ from alula.report.pictures import mark
 from alula.report.sections.geometry import geometry
 from alula.report.span_loads import STYLE, span_load
 
+_LOADED = 1e-4  # c_l below which a surface carries nothing to be drawn
+_SHORT = 150  # letters of a source that stand unfolded
 _MODEST = 0.35  # of the value: errors above it are marked
+_STYLE = "td .source,td details.source{min-width:230px}"
 
 
 def prediction_page(found: Prediction) -> str:
     """The page as HTML; the same input gives the same text."""
-    style = files("alula.report").joinpath("page.css").read_text(encoding="utf-8") + STYLE
+    style = files("alula.report").joinpath("page.css").read_text(encoding="utf-8") + STYLE + _STYLE
     digest = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode()
     policy = f"default-src 'none'; style-src 'sha256-{digest}'; base-uri 'none'; form-action 'none'"
     sections = _sections(found)
@@ -84,7 +87,6 @@ def _facts(found: Prediction) -> Html:
         "Static margin, controls fixed": MISSING
         if margin is None
         else f"{percent(margin, 3)} of c",
-        "Model": "written by --model" if found.model is not None else "not of the whole aircraft",
     }
     return tag("dl", *(tag("div", tag("dt", k), tag("dd", v)) for k, v in facts.items()),
                class_="facts")  # fmt: skip
@@ -107,7 +109,7 @@ def _derivatives(found: Prediction) -> Html:
         ]  # fmt: skip
         if several:
             row += [_value(d.values.get(name)) for d in found.parts]
-        rows.append([*row, tag("span", e.source, class_="source")])
+        rows.append([*row, _source(e.source) if name not in flown else "sum of the two"])
     said = [tag("p", words, class_="note") for words in found.conventions("stability")]
     return join(
         [
@@ -124,6 +126,14 @@ def _value(e: Estimate | None) -> str:
     if e is None:
         return MISSING
     return plus_minus(e.value, e.se) if e.se > 0.0 else number(e.value)
+
+
+def _source(words: str) -> Html:
+    """A long account folds: its head stands in the table."""
+    if len(words) <= _SHORT:
+        return tag("span", words, class_="source")
+    head = words[:_SHORT].rsplit(" ", 1)[0]
+    return tag("details", tag("summary", f"{head} …"), words, class_="source")
 
 
 def _share(e: Estimate) -> object:
@@ -143,11 +153,13 @@ def _loads(found: Prediction) -> Html:
         f"{number(c['CL'])}, induced CD {number(r.induced_drag, 3)} in the Trefftz plane, Oswald "
         f"factor {number(r.oswald, 3)} of {r.oswald_of}."
     )
+    loaded = [s for s in r.span_loads if float(abs(s.c_l).max()) > _LOADED]
     figures = (
-        tag("figure", tag("figcaption", s.surface), span_load(s, found.aircraft.c))
-        for s in r.span_loads
+        tag("figure", tag("figcaption", s.surface), span_load(s, found.aircraft.c)) for s in loaded
     )
-    return join([tag("p", words), tag("div", *figures, class_="grid")])
+    rest = [s.surface for s in r.span_loads if s not in loaded]
+    idle = tag("p", f"Without load: {', '.join(rest)}.", class_="note") if rest else None
+    return join([tag("p", words), tag("div", *figures, class_="grid"), idle])
 
 
 def _mesh(found: Prediction) -> Html:
