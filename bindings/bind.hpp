@@ -29,3 +29,4 @@ void bind_simulate(nb::module_& m);
 void bind_aircraft(nb::module_& m);
 void bind_recursive(nb::module_& m);
 void bind_output_error(nb::module_& m);
+void bind_asse(nb::module_& m);

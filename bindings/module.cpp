@@ -12,4 +12,5 @@ NB_MODULE(ALULA_MODULE, m) {
   bind_simulate(m);
   bind_recursive(m);
   bind_output_error(m);
+  bind_asse(m);
 }
