@@ -205,7 +205,7 @@ inline bool add_airspeed(AsseFilter<T>& f, double t, T V) {
   f.any_V = true;
   const auto q = shift(f.track, p);
   const Vec3<T> error = f.error_a - cross(f.input.gravity, f.tilt);
-  const Vec3<T> moved = q.c + q.lag * error - cross(f.error_w, q.by_gyro);
+  const Vec3<T> moved = q.c + q.lag * error;
   const auto& s = f.settings;
   const T r = s.sigma_V * s.sigma_V;
   if (!f.running) {  // the first one
@@ -221,14 +221,13 @@ inline bool add_airspeed(AsseFilter<T>& f, double t, T V) {
   const Vec3<T> v = f.V * b.along + moved;
   const T h = std::sqrt(dot(v, v));
   if (!(h > T(0))) return ++f.rejected.outlying, false;
-  const Vec3<T> d = (T(1) / h) * v, by_w = cross(d, q.by_gyro);
+  const Vec3<T> d = (T(1) / h) * v;
   const Vec3<T> by_tilt = (-q.lag) * cross(d, f.input.gravity);
   const T H[AsseFilter<T>::n] = {dot(d, b.along),
                                  f.V * b.cos_beta * dot(d, b.by_alpha),
                                  f.V * dot(d, b.by_beta),
                                  by_tilt.x, by_tilt.y, by_tilt.z,
-                                 q.lag * d.x, q.lag * d.y, q.lag * d.z,
-                                 by_w.x, by_w.y, by_w.z};
+                                 q.lag * d.x, q.lag * d.y, q.lag * d.z};
   if (!asse_detail::measure(f, H, V - h, r)) {
     ++f.rejected.outlying;
     if (++f.outliers > AsseFilter<T>::kMostOutliers) asse_detail::forget_motion(f);

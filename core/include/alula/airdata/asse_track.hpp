@@ -7,20 +7,18 @@
 
 namespace alula {
 
-// Velocity gained and way gone, in axes that do not turn.
+// Velocity gained, in axes that do not turn.
 template <class T>
 struct TrackPoint {
   T t{0};          // s, from the track's origin
   Vec3<T> gained;  // integral of a since the origin, m/s
-  Vec3<T> way;     // integral of `gained`, m
 };
 
 // Where the velocity vector was before t, in the body axes of t.
 template <class T>
 struct Shift {
-  T lag;           // s, t - tau
-  Vec3<T> c;       // v(tau) = v(t) + c
-  Vec3<T> by_gyro; // D with dc = D x (error of the rates): a small constant error of the gyros
+  T lag;      // s, t - tau
+  Vec3<T> c;  // v(tau) = v(t) + c
 };
 
 template <class T>
@@ -83,10 +81,7 @@ inline void start(AsseTrack<T>& track, double t, const Vec3<T>& a, const Vec3<T>
 // A point seen from the body axes and the velocity of now.
 template <class T>
 inline TrackPoint<T> seen_from_here(const AsseTrack<T>& track, const TrackPoint<T>& p) {
-  const auto& h = track.here;
-  const T dt = p.t - h.t;
-  return {dt, back(track.turned, p.gained - h.gained),
-          back(track.turned, p.way - h.way - dt * h.gained)};
+  return {p.t - track.here.t, back(track.turned, p.gained - track.here.gained)};
 }
 
 // Puts the origin here, so that nothing grows with time. Call seen_from_here first on every point
@@ -100,7 +95,7 @@ inline void put_origin_here(AsseTrack<T>& track) {
 }
 
 // Goes on by dt > 0 to where the acceleration is a and the rates w, both lines in between: rotation
-// with the coning term, integrals by Simpson's rule in turning axes.
+// with the coning term, integral by Simpson's rule in turning axes.
 template <class T>
 inline void advance(AsseTrack<T>& track, T dt, const Vec3<T>& a, const Vec3<T>& w) {
   const Vec3<T> coning = dt * dt / T(12) * cross(track.w, w);
@@ -110,10 +105,8 @@ inline void advance(AsseTrack<T>& track, T dt, const Vec3<T>& a, const Vec3<T>& 
   const Mat3<T> R = rotation(whole);
   const Vec3<T> middle = rotation(half) * (T(0.5) * (track.a + a));
   auto& h = track.here;
-  const Vec3<T> slope = h.gained;
   h.t += dt;
   h.gained = h.gained + dt / T(6) * (track.turned * (track.a + T(4) * middle + R * a));
-  h.way = h.way + dt * slope + dt * dt / T(6) * (track.turned * (track.a + T(2) * middle));
   track.turned = product(track.turned, R);
   track.a = a;
   track.w = w;
@@ -129,8 +122,7 @@ inline void advance(AsseTrack<T>& track, T dt, const Vec3<T>& a, const Vec3<T>& 
 template <class T>
 inline Shift<T> shift(const AsseTrack<T>& track, const TrackPoint<T>& p) {
   const auto q = seen_from_here(track, p);
-  // D is the integral of (t - s) a(s), by parts the way against the velocity at tau.
-  return {-q.t, q.gained, q.t * q.gained - q.way};
+  return {-q.t, q.gained};
 }
 
 // The point at time t, s, of the recent past, on lines between steps; false where it is not kept.
@@ -145,7 +137,7 @@ inline bool find(const AsseTrack<T>& track, double t, TrackPoint<T>& p) {
   if (i == track.count - 1) return p = low, true;
   const auto& high = track.point(i + 1);
   const T f = (when - low.t) / (high.t - low.t);
-  p = {when, low.gained + f * (high.gained - low.gained), low.way + f * (high.way - low.way)};
+  p = {when, low.gained + f * (high.gained - low.gained)};
   return true;
 }
 

@@ -16,6 +16,7 @@ struct AsseSample {
   TrackPoint<T> point;
   T V{0};
   T variance{0};  // of V, m2/s2
+  T a2{0};        // square of the acceleration then, m2/s4
 };
 
 template <class T>
@@ -93,7 +94,6 @@ inline bool add_airspeed(AsseWindow<T>& f, double t, T V) {
   if (f.in_block == 0) f.block_start = when;
   b.point.t += p.t;
   b.point.gained = b.point.gained + p.gained;
-  b.point.way = b.point.way + p.way;
   b.V += V;
   ++f.in_block;
   if (when - f.block_start < static_cast<double>(f.settings.block) * (1.0 - 1e-6) &&
@@ -102,8 +102,8 @@ inline bool add_airspeed(AsseWindow<T>& f, double t, T V) {
   // The mean of distances to neighboring points is the distance to their mean, but for their
   // spread across it, a few mm/s.
   const T k = T(1) / T(f.in_block);
-  AsseSample<T> s{{k * b.point.t, k * b.point.gained, k * b.point.way}, k * b.V,
-                  k * f.settings.sigma_V * f.settings.sigma_V};
+  const AsseSample<T> s{{k * b.point.t, k * b.point.gained}, k * b.V,
+                        k * f.settings.sigma_V * f.settings.sigma_V, dot(f.track.a, f.track.a)};
   const int most = f.capacity < kMaxAsseSamples ? f.capacity : kMaxAsseSamples;
   if (f.count >= most) {
     f.first = (f.first + 1) % kMaxAsseSamples;
@@ -120,121 +120,106 @@ inline bool add_airspeed(AsseWindow<T>& f, double t, T V) {
   return true;
 }
 
-// The estimate at the track's last time from what the window holds. Nothing is observable with
-// fewer than three samples.
+namespace asse_detail {
+
+// The least-squares problem of one moment. Unknowns: error of the acceleration and its drift, each
+// in units of its standard deviation, then V and V times the angles' changes.
 template <class T>
-inline AsseEstimate<T> solve(AsseWindow<T>& f) {
-  constexpr int p = 9, n = 12, R = 12;  // errors, then V, alpha, beta
+struct WindowProblem {
+  static constexpr int p = 6, n = 9, R = 12;
+
+  int count = 0;
+  Vec3<T> c[kMaxAsseSamples];
+  T lag[kMaxAsseSamples], V[kMaxAsseSamples], weight[kMaxAsseSamples];
+  T across = T(0), along = T(0), drift = T(0);  // standard deviations of the errors
+  Vec3<T> down;
+  T scale = T(1), prior = T(0), first_alpha = T(0), first_beta = T(0);
+  T A[R][R], g[R];  // information and gradient at the last point looked at
+
+  // Root of the covariance of the acceleration's error, times v: tilt works across gravity only.
+  Vec3<T> root(const Vec3<T>& v) const {
+    return across * v + ((along - across) * dot(down, v)) * down;
+  }
+};
+
+template <class T>
+inline void set_up(WindowProblem<T>& w, const AsseWindow<T>& f) {
   const auto& s = f.settings;
-  AsseEstimate<T> out;
-  out.samples = f.count;
-  const double now = f.track.origin + static_cast<double>(f.track.here.t);
-  const T dt = static_cast<T>(now - f.reported);
-  f.reported = now;
-  const auto lost = [&] {
-    report(f.alpha, T(0), false, dt);
-    report(f.beta, T(0), false, dt);
-    return out;
-  };
-  if (f.count < 3) return lost();
-
-  Shift<T> shifts[kMaxAsseSamples];
-  T weight[kMaxAsseSamples];
+  w.count = f.count;
+  T a2 = T(0);
   for (int i = 0; i < f.count; ++i) {
-    const auto& k = asse_detail::sample(f, i);
-    shifts[i] = shift(f.track, k.point);
+    const auto& k = sample(f, i);
+    const auto moved = shift(f.track, k.point);
+    w.c[i] = moved.c;
+    w.lag[i] = moved.lag;
+    w.V[i] = k.V;
+    a2 += k.a2 / T(f.count);
   }
-  // What the acceleration may be wrong by: bias every way, tilt across gravity, and the random
-  // walk of sensors and wind as the constant error that drifts as far over the window.
-  const T g2 = dot(f.gravity, f.gravity), span = shifts[0].lag > T(0) ? shifts[0].lag : T(1);
+  const T g2 = dot(f.gravity, f.gravity), span = w.lag[0] > T(0) ? w.lag[0] : T(1);
+  // Random walks of the velocity go as the constant error that drifts as far over the window.
   const T walk = T(3) / span * (s.density_a * s.density_a + s.density_wind * s.density_wind);
-  const T along = s.sigma_a * s.sigma_a + walk, across = along + s.sigma_tilt * s.sigma_tilt * g2;
-  const T sigma_along = std::sqrt(along), sigma_across = std::sqrt(across);
-  const T sigma_w = std::sqrt(s.sigma_w * s.sigma_w + T(3) / span * s.density_w * s.density_w);
-  // The attitude's error changes over the window: as a straight line, and what that leaves.
-  const T drift = s.tilt_time > T(0) ? T(2) * s.sigma_tilt * s.sigma_tilt * g2 / s.tilt_time : T(0);
-  const T sigma_drift = std::sqrt(T(1.2) * drift / span);
-  const Vec3<T> down = g2 > T(0) ? (T(1) / std::sqrt(g2)) * f.gravity : Vec3<T>{};
-  const auto root = [&](const Vec3<T>& v) {  // root of the error's covariance, times v
-    return sigma_across * v + ((sigma_along - sigma_across) * dot(down, v)) * down;
-  };
+  const T along = s.sigma_a * s.sigma_a + walk;
+  w.along = std::sqrt(along);
+  w.across = std::sqrt(along + s.sigma_tilt * s.sigma_tilt * g2);
+  if (g2 > T(0)) w.down = (T(1) / std::sqrt(g2)) * f.gravity;
+  // Those of the acceleration, from attitude and gyros, as a straight line and what it leaves.
+  const T tilt = s.tilt_time > T(0) ? T(2) * s.sigma_tilt * s.sigma_tilt * g2 / s.tilt_time : T(0);
+  const T wander = tilt + s.density_w * s.density_w * a2;
+  w.drift = std::sqrt(T(1.2) * wander / span + s.sigma_w * s.sigma_w * a2);
+  for (int i = 0; i < f.count; ++i)
+    w.weight[i] = T(1) / (sample(f, i).variance + wander * w.lag[i] * w.lag[i] * w.lag[i] / T(60));
+  w.scale = sample(f, f.count - 1).V;
+  const T widest = T(3) * s.first_sigma;  // what an angle may be in flight
+  w.prior = T(1) / (w.scale * w.scale * widest * widest);
+  w.first_alpha = s.first_alpha;
+  w.first_beta = s.first_beta;
+}
 
-  for (int i = 0; i < f.count; ++i) {
-    const T lag = shifts[i].lag;
-    weight[i] = T(1) / (asse_detail::sample(f, i).variance + drift * lag * lag * lag / T(60));
+// Cost at x; A and g there.
+template <class T>
+inline T look_at(WindowProblem<T>& w, const T* x) {
+  constexpr int p = WindowProblem<T>::p, R = WindowProblem<T>::R;
+  const auto b = flow_basis(x[p + 1], x[p + 2]);
+  const Vec3<T> velocity = x[p] * b.along;
+  const Vec3<T> error = w.root({x[0], x[1], x[2]});
+  const Vec3<T> change = (T(0.5) * w.drift) * Vec3<T>{x[3], x[4], x[5]};
+  const Vec3<T> by_alpha = (x[p] * b.cos_beta / w.scale) * b.by_alpha;
+  const Vec3<T> by_beta = (x[p] / w.scale) * b.by_beta;
+  const T da = w.scale * (x[p + 1] - w.first_alpha), db = w.scale * (x[p + 2] - w.first_beta);
+  T cost = w.prior * (da * da + db * db);
+  for (auto& row : w.A) clear<R>(row);
+  for (int i = 0; i < p; ++i) {
+    w.A[i][i] = T(1);
+    w.g[i] = -x[i];
+    cost += x[i] * x[i];
   }
-
-  T x[n]{};  // in units of one standard deviation, then V, alpha, beta
-  const auto& last = asse_detail::sample(f, f.count - 1);
-  x[p] = last.V;
-  x[p + 1] = f.alpha.ever ? f.alpha.value : s.first_alpha;
-  x[p + 2] = f.beta.ever ? f.beta.value : s.first_beta;
-  T A[R][R], U[R][R];
-  const T scale = x[p], widest = T(3) * s.first_sigma;
-  const auto residuals = [&](const T* at, bool rows, T* g) {
-    const auto b = flow_basis(at[p + 1], at[p + 2]);
-    const Vec3<T> error = root({at[0], at[1], at[2]}), turn = sigma_w * Vec3<T>{at[3], at[4], at[5]};
-    const Vec3<T> change = (T(0.5) * sigma_drift) * Vec3<T>{at[6], at[7], at[8]};
-    const T da = scale * (at[p + 1] - s.first_alpha), db = scale * (at[p + 2] - s.first_beta);
-    const T prior = T(1) / (scale * scale * widest * widest);
-    T cost = prior * (da * da + db * db);
-    for (int i = 0; i < p; ++i) cost += at[i] * at[i];
-    if (rows) {
-      for (auto& row : A)
-        for (T& v : row) v = T(0);
-      for (int i = 0; i < p; ++i) A[i][i] = T(1);
-      A[p][p] = T(1e-8);
-      A[p + 1][p + 1] = A[p + 2][p + 2] = prior;
-      for (int i = 0; i < p; ++i) g[i] = -at[i];
-      g[p] = T(0);
-      g[p + 1] = -prior * da;
-      g[p + 2] = -prior * db;
-    }
-    for (int k = 0; k < f.count; ++k) {
-      const auto& q = shifts[k];
-      const Vec3<T> v = at[p] * b.along + q.c + q.lag * (error + q.lag * change) -
-                        cross(turn, q.by_gyro);
-      const T h = std::sqrt(dot(v, v)), r = asse_detail::sample(f, k).V - h;
-      cost += weight[k] * r * r;
-      if (!rows || !(h > T(0))) continue;
-      const Vec3<T> d = (T(1) / h) * v, e = q.lag * root(d), w = sigma_w * cross(d, q.by_gyro);
-      const Vec3<T> c = (T(0.5) * sigma_drift * q.lag * q.lag) * d;
-      const T row[R] = {e.x, e.y, e.z, w.x, w.y, w.z, c.x, c.y, c.z, dot(d, b.along),
-                        at[p] * b.cos_beta * dot(d, b.by_alpha) / scale,
-                        at[p] * dot(d, b.by_beta) / scale};
-      for (int i = 0; i < n; ++i) {
-        const T f_i = weight[k] * row[i];
-        g[i] += f_i * r;
-        for (int j = i; j < n; ++j) A[i][j] += f_i * row[j];
-      }
-    }
-    return cost;
-  };
-
-  T g[R]{}, cost = residuals(x, true, g);
-  bool settled = false;
-  for (; out.iterations < 8 && !settled; ++out.iterations) {
-    if (cholesky<R>(A, U, n) < 0) return lost();
-    T step[R]{};
-    for (int i = 0; i < n; ++i) step[i] = g[i];
-    alula::solve(U, step, n);
-    step[p + 1] /= scale;
-    step[p + 2] /= scale;
-    const T angle = std::fmax(std::fabs(step[p + 1]), std::fabs(step[p + 2]));
-    T k = angle > T(0.3) ? T(0.3) / angle : T(1), then = cost;
-    T y[n];
-    for (int tries = 0; tries < 5; ++tries, k *= T(0.3)) {
-      for (int i = 0; i < n; ++i) y[i] = x[i] + k * step[i];
-      then = residuals(y, false, g);
-      if (then <= cost * (T(1) + (sizeof(T) == 8 ? T(1e-12) : T(1e-4)))) break;
-    }
-    if (!std::isfinite(then)) return lost();
-    for (int i = 0; i < n; ++i) x[i] = y[i];
-    settled = angle < (sizeof(T) == 8 ? T(1e-7) : T(1e-4));
-    cost = residuals(x, true, g);
+  w.A[p][p] = T(1e-8);
+  w.A[p + 1][p + 1] = w.A[p + 2][p + 2] = w.prior;
+  w.g[p] = T(0);
+  w.g[p + 1] = -w.prior * da;
+  w.g[p + 2] = -w.prior * db;
+  for (int i = p + 3; i < R; ++i) w.g[i] = T(0);
+  for (int k = 0; k < w.count; ++k) {
+    const T lag = w.lag[k];
+    const Vec3<T> v = velocity + w.c[k] + lag * (error + lag * change);
+    const T h2 = dot(v, v);
+    if (!(h2 > T(0))) continue;
+    const T h = std::sqrt(h2), r = w.V[k] - h, half = T(0.5) * w.drift * lag * lag;
+    const Vec3<T> d = (T(1) / h) * v, e = lag * w.root(d);
+    const T row[R] = {e.x,        e.y,        e.z,           half * d.x,       half * d.y,
+                      half * d.z, dot(d, b.along), dot(d, by_alpha), dot(d, by_beta)};
+    const T weight = w.weight[k];
+    cost += weight * r * r;
+    add_scaled<R>(w.g, weight * r, row);
+    for (int i = 0; i < p + 3; ++i) add_scaled_from<R>(i, w.A[i], weight * row[i], row);
   }
-  if (cholesky<R>(A, U, n) < 0) return lost();
-  // The last rows of U alone hold the information of the last unknowns.
+  return cost;
+}
+
+// Covariance of V, alpha, beta: the last rows of the factor U alone hold their information.
+template <class T>
+inline void last_three(const T (*U)[WindowProblem<T>::R], T scale, T (*P)[3]) {
+  constexpr int p = WindowProblem<T>::p;
   T W[3][3]{};
   for (int c = 0; c < 3; ++c)
     for (int i = c; i >= 0; --i) {
@@ -247,8 +232,61 @@ inline AsseEstimate<T> solve(AsseWindow<T>& f) {
     for (int j = 0; j < 3; ++j) {
       T v = T(0);
       for (int c = 0; c < 3; ++c) v += W[i][c] * W[j][c];
-      out.P[i][j] = unit[i] * unit[j] * v;
+      P[i][j] = unit[i] * unit[j] * v;
     }
+}
+
+}  // namespace asse_detail
+
+// The estimate at the track's last time from what the window holds. Nothing is observable with
+// fewer than three samples.
+template <class T>
+inline AsseEstimate<T> solve(AsseWindow<T>& f) {
+  using Problem = asse_detail::WindowProblem<T>;
+  constexpr int p = Problem::p, n = Problem::n, R = Problem::R;
+  const auto& s = f.settings;
+  AsseEstimate<T> out;
+  out.samples = f.count;
+  const double now = f.track.origin + static_cast<double>(f.track.here.t);
+  const T dt = static_cast<T>(now - f.reported);
+  f.reported = now;
+  const auto lost = [&] {
+    report(f.alpha, T(0), false, dt);
+    report(f.beta, T(0), false, dt);
+    return out;
+  };
+  if (f.count < 3) return lost();
+  Problem w;
+  asse_detail::set_up(w, f);
+  T x[n]{};
+  x[p] = w.scale;
+  x[p + 1] = f.alpha.ever ? f.alpha.value : s.first_alpha;
+  x[p + 2] = f.beta.ever ? f.beta.value : s.first_beta;
+  T cost = asse_detail::look_at(w, x), U[R][R];
+  bool settled = false;
+  for (; out.iterations < 12 && !settled; ++out.iterations) {
+    T step[R];
+    if (cholesky<R>(w.A, U, n) < 0) return lost();
+    for (int i = 0; i < R; ++i) step[i] = w.g[i];
+    alula::solve(U, step, n);
+    T gain = T(0);  // of the cost, were it a parabola; 1: one standard deviation
+    for (int i = 0; i < n; ++i) gain += step[i] * w.g[i];
+    step[p + 1] /= w.scale;
+    step[p + 2] /= w.scale;
+    const T angle = std::fmax(std::fabs(step[p + 1]), std::fabs(step[p + 2]));
+    T k = angle > T(0.3) ? T(0.3) / angle : T(1), then = cost, y[n];
+    for (int tries = 0; tries < 4; ++tries, k *= T(0.3)) {
+      for (int i = 0; i < n; ++i) y[i] = x[i] + k * step[i];
+      then = asse_detail::look_at(w, y);
+      if (then <= cost + T(1e-4)) break;
+    }
+    if (!std::isfinite(then)) return lost();
+    for (int i = 0; i < n; ++i) x[i] = y[i];
+    cost = then;
+    settled = gain < T(1e-4);
+  }
+  if (cholesky<R>(w.A, U, n) < 0) return lost();
+  asse_detail::last_three(U, w.scale, out.P);
   out.V = x[p];
   out.alpha = x[p + 1];
   out.beta = x[p + 2];
