@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
@@ -17,7 +17,7 @@ from alula.base.provenance import provenance
 from alula.campaign.check import Checked, Progress, check_project
 from alula.campaign.hold_out import with_held_out
 from alula.campaign.measured import engines_of, measured_maneuvers
-from alula.campaign.methods import IDENTIFIERS, IdentifyTask, identify_by, method_name
+from alula.campaign.methods import IDENTIFIERS, IdentifyTask, Measured, identify_by, method_name
 from alula.flight import Flight, Maneuver
 from alula.identify import (
     CoefficientData,
@@ -155,17 +155,29 @@ def identify_project(
     seed: int = 0,
 ) -> Identification:
     """The models identified from reconstructed maneuvers by the method of that name."""
+    measure = partial(measured_maneuvers, checked, reconstruction)
+    return identify_by(method, task_of(checked, data, measure, models, truth, seed))
+
+
+def task_of(
+    checked: Checked,
+    data: tuple[CoefficientData, ...],
+    measure: Callable[[], Measured],
+    models: Mapping[str, str],
+    truth: Mapping[str, float] | None = None,
+    seed: int = 0,
+) -> IdentifyTask:
+    """What a method of identification may ask of a project."""
     base = checked.aircraft
-    task = IdentifyTask(
+    return IdentifyTask(
         data=data,
-        measure=partial(measured_maneuvers, checked, reconstruction),
+        measure=measure,
         models=models,
         reference=Reference(base.S, base.b, base.c, base.reference_point),
         options=checked.project.identify.options,
         truth=truth,
         seed=seed,
     )
-    return identify_by(method, task)
 
 
 def report_of(job: Job, date: str, seed: int | None) -> ReportInput:

@@ -9,6 +9,7 @@ from typing import NoReturn
 import typer
 
 from alula.base.messages import refuse
+from alula.cli.calibrate import calibrate
 from alula.cli.check import check
 from alula.cli.compare import compare
 from alula.cli.contract import Command
@@ -19,6 +20,7 @@ from alula.cli.linearize import linearize
 from alula.cli.modes import modes
 from alula.cli.new import new
 from alula.cli.plan import plan
+from alula.cli.propeller import propeller
 from alula.cli.schema import schema
 from alula.cli.trim import trim
 from alula.cli.validate import validate
@@ -33,6 +35,7 @@ app = typer.Typer(
 COMMANDS = (
     new,
     check,
+    calibrate,
     identify,
     compare,
     plan,
@@ -41,6 +44,7 @@ COMMANDS = (
     linearize,
     modes,
     validate,
+    propeller,
     export,
     schema,
 )

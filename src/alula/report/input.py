@@ -14,6 +14,7 @@ from alula.reconstruct.result import Reconstruction
 
 if TYPE_CHECKING:
     from alula.logs.card import LogCard
+    from alula.validate.reidentify import Reidentified
     from alula.validate.result import Validation
 
 
@@ -37,6 +38,7 @@ class ReportInput:
     reconstruction: Reconstruction | None = None
     identification: Identification | None = None
     validation: Validation | None = None
+    reidentified: tuple[Reidentified, ...] = ()
     messages: tuple[Message, ...] = ()
     provenance: Mapping[str, Any] = field(default_factory=dict)
     shape: Aircraft | None = None

@@ -19,6 +19,7 @@ from alula.report.sections.maneuvers import maneuvers
 from alula.report.sections.notes import messages, provenance
 from alula.report.sections.parameters import parameters
 from alula.report.sections.reconstruction import reconstruction
+from alula.report.sections.repeated import repeated
 from alula.report.sections.summary import header
 from alula.report.sections.validation import evidence
 from alula.report.sections.validation_flights import flights
@@ -105,6 +106,8 @@ def _sections(report: ReportInput, figures: FigureStore) -> list[tuple[str, str,
             over_time = histories(report.identification, figures)
             found.append(("histories", "Estimates over time", over_time))
         found.append(("parameters", "Parameters", parameters(report.identification)))
+        if report.reidentified:
+            found.append(("repeated", "Identified again", repeated(report.reidentified)))
         found.append(("correlation", "Correlation", correlation(report.identification)))
     if report.shape is not None and report.shape.geometry is not None:
         neutral = identified_neutral_point(report.shape, report.identification)

@@ -1,0 +1,1 @@
+"""Attitude, position, wind and their sensors: calibration and filters."""
