@@ -185,7 +185,7 @@ inline bool advance(AsseFilter<T>& f, const AsseInput<T>& u) {
       asse_detail::propagate(f, dt, T(0.5) * (a + f.track.a), T(0.5) * (u.gravity + f.input.gravity),
                              T(0.5) * (u.w + f.track.w));
     if (f.track.here.t > T(1)) put_origin_here(f.track);
-    advance(f.track, dt, a, u.w);
+    advance(f.track, u.t, a, u.w);
   }
   f.input = u;
   asse_detail::report_angles(f, dt);

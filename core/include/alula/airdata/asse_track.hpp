@@ -28,6 +28,7 @@ struct AsseTrack {
   TrackPoint<T> past[kPoints];
   int first = 0, count = 0;
   double origin = 0.0;  // s: everything in past and here is relative to it
+  double now = 0.0;     // s
   TrackPoint<T> here;
   // Rows: from body axes now into those of the origin.
   Mat3<T> turned{{{T(1), T(0), T(0)}, {T(0), T(1), T(0)}, {T(0), T(0), T(1)}}};
@@ -70,7 +71,7 @@ constexpr Mat3<T> product(const Mat3<T>& a, const Mat3<T>& b) {
 template <class T>
 inline void start(AsseTrack<T>& track, double t, const Vec3<T>& a, const Vec3<T>& w) {
   track = AsseTrack<T>{};
-  track.origin = t;
+  track.origin = track.now = t;
   track.a = a;
   track.w = w;
   track.started = true;
@@ -89,15 +90,16 @@ inline TrackPoint<T> seen_from_here(const AsseTrack<T>& track, const TrackPoint<
 template <class T>
 inline void put_origin_here(AsseTrack<T>& track) {
   for (int i = 0; i < track.count; ++i) track.point(i) = seen_from_here(track, track.point(i));
-  track.origin += static_cast<double>(track.here.t);
+  track.origin = track.now;
   track.here = {};
   track.turned = {{{T(1), T(0), T(0)}, {T(0), T(1), T(0)}, {T(0), T(0), T(1)}}};
 }
 
-// Goes on by dt > 0 to where the acceleration is a and the rates w, both lines in between: rotation
+// Goes on to a later time t, s, where the acceleration is a and the rates w, both lines in between: rotation
 // with the coning term, integral by Simpson's rule in turning axes.
 template <class T>
-inline void advance(AsseTrack<T>& track, T dt, const Vec3<T>& a, const Vec3<T>& w) {
+inline void advance(AsseTrack<T>& track, double t, const Vec3<T>& a, const Vec3<T>& w) {
+  const T dt = static_cast<T>(t - track.now);
   const Vec3<T> coning = dt * dt / T(12) * cross(track.w, w);
   // The first half has the mean of its own rates and an eighth of the coning.
   const Vec3<T> half = dt / T(8) * (T(3) * track.w + w) + T(0.125) * coning;
@@ -105,7 +107,8 @@ inline void advance(AsseTrack<T>& track, T dt, const Vec3<T>& a, const Vec3<T>& 
   const Mat3<T> R = rotation(whole);
   const Vec3<T> middle = rotation(half) * (T(0.5) * (track.a + a));
   auto& h = track.here;
-  h.t += dt;
+  track.now = t;
+  h.t = static_cast<T>(t - track.origin);
   h.gained = h.gained + dt / T(6) * (track.turned * (track.a + T(4) * middle + R * a));
   track.turned = product(track.turned, R);
   track.a = a;
@@ -129,12 +132,15 @@ inline Shift<T> shift(const AsseTrack<T>& track, const TrackPoint<T>& p) {
 template <class T>
 inline bool find(const AsseTrack<T>& track, double t, TrackPoint<T>& p) {
   const T when = static_cast<T>(t - track.origin);
-  if (!track.started || !(when <= track.here.t + T(1e-6))) return false;
+  if (!track.started || !(t <= track.now)) return false;
   int i = track.count - 1;
   for (; i > 0 && track.point(i).t > when; --i) {}
   const auto& low = track.point(i);
   if (when < low.t) return false;
-  if (i == track.count - 1) return p = low, true;
+  if (i == track.count - 1) {
+    p = low;
+    return true;
+  }
   const auto& high = track.point(i + 1);
   const T f = (when - low.t) / (high.t - low.t);
   p = {when, low.gained + f * (high.gained - low.gained)};

@@ -63,11 +63,10 @@ inline bool advance(AsseWindow<T>& f, const AsseInput<T>& u) {
   if (!is_finite(u)) return ++f.rejected.not_finite, false;
   const Vec3<T> a = air_acceleration(u.f, u.gravity, u.wind_rate);
   if (f.track.started) {
-    const double now = f.track.origin + static_cast<double>(f.track.here.t);
-    const T dt = static_cast<T>(u.t - now);
+    const T dt = static_cast<T>(u.t - f.track.now);
     if (!(dt > T(0))) return ++f.rejected.backward, false;
     if (dt <= f.settings.longest_gap) {
-      advance(f.track, dt, a, u.w);
+      advance(f.track, u.t, a, u.w);
       f.gravity = u.gravity;
       return true;
     }
@@ -247,9 +246,8 @@ inline AsseEstimate<T> solve(AsseWindow<T>& f) {
   const auto& s = f.settings;
   AsseEstimate<T> out;
   out.samples = f.count;
-  const double now = f.track.origin + static_cast<double>(f.track.here.t);
-  const T dt = static_cast<T>(now - f.reported);
-  f.reported = now;
+  const T dt = static_cast<T>(f.track.now - f.reported);
+  f.reported = f.track.now;
   const auto lost = [&] {
     report(f.alpha, T(0), false, dt);
     report(f.beta, T(0), false, dt);
