@@ -12,6 +12,7 @@ namespace alula {
 template <class T>
 struct AsseFilter {
   static constexpr int n = 12;
+  static constexpr T second_order_time = T(3);  // s
   static constexpr int kMostOutliers = 25;  // in a row: then it is the filter that is wrong
 
   AsseSettings<T> settings;
@@ -106,11 +107,18 @@ inline void propagate(AsseFilter<T>& f, T dt, const Vec3<T>& a_measured, const V
   const auto& s = f.settings;
   const Vec3<T> a = a_measured + cross(gravity, f.tilt) - f.error_a, w = w_measured - f.error_w;
   const auto b = flow_basis(f.alpha, f.beta);
-  const Vec3<T> v = f.V * b.along;
+  const T before = f.V;
+  const Vec3<T> v = before * b.along;
   const Mat3<T> R = rotation((-dt) * w);
   const Vec3<T> then = R * v + dt * (rotation((T(-0.5) * dt) * w) * a);
   const T V = std::sqrt(dot(then, then)), least = T(0.1) * s.least_V;
-  f.V = V > least ? V : least;
+  // Second order: angles that are wrong either way shorten the part of a along v. What that is
+  // uncertain by lasts as long as the angles stay wrong; as white noise it is that much stronger.
+  const T bent = dot(a, b.along), pa = f.P[1][1], pb = f.P[2][2], pab = f.P[1][2];
+  const T shorter = T(0.5) * dt * bent * (pa + pb);
+  const T unsure = dt * AsseFilter<T>::second_order_time * bent * bent *
+                   (pa * pa + pb * pb + T(2) * pab * pab);
+  f.V = V - shorter > least ? V - shorter : least;
   f.alpha = std::atan2(then.z, then.x);
   f.beta = std::atan2(then.y, std::hypot(then.x, then.z));
   const auto c = flow_basis(f.alpha, f.beta);
@@ -118,8 +126,8 @@ inline void propagate(AsseFilter<T>& f, T dt, const Vec3<T>& a_measured, const V
   const T cb = std::fmax(c.cos_beta, T(1e-3));
   const Vec3<T> rows[3] = {c.along, (T(1) / (f.V * cb)) * c.by_alpha, (T(1) / f.V) * c.by_beta};
   const T keep = s.tilt_time > T(0) ? std::exp(-dt / s.tilt_time) : T(0);
-  const Vec3<T> columns[3] = {R * b.along, (f.V * b.cos_beta) * (R * b.by_alpha),
-                              f.V * (R * b.by_beta)};
+  const Vec3<T> columns[3] = {R * b.along, (before * b.cos_beta) * (R * b.by_alpha),
+                              before * (R * b.by_beta)};
   T F[3][n];
   const T noise_a = dt * (s.density_a * s.density_a + s.density_wind * s.density_wind);
   const T noise_w = dt * s.density_w * s.density_w;
@@ -145,6 +153,7 @@ inline void propagate(AsseFilter<T>& f, T dt, const Vec3<T>& a_measured, const V
       for (int k = 0; k < n; ++k) sum += FP[i][k] * F[j][k];
       f.P[i][j] = f.P[j][i] = sum;
     }
+  f.P[0][0] += unsure;
   for (int i = 0; i < 3; ++i)
     for (int j = 3; j < n; ++j) f.P[i][j] = f.P[j][i] = (j < 6 ? keep : T(1)) * FP[i][j];
   for (int i = 3; i < 6; ++i) {

@@ -132,7 +132,7 @@ inline Shift<T> shift(const AsseTrack<T>& track, const TrackPoint<T>& p) {
 template <class T>
 inline bool find(const AsseTrack<T>& track, double t, TrackPoint<T>& p) {
   const T when = static_cast<T>(t - track.origin);
-  if (!track.started || !(t <= track.now)) return false;
+  if (!track.started || !(t <= track.now + 1e-6)) return false;
   int i = track.count - 1;
   for (; i > 0 && track.point(i).t > when; --i) {}
   const auto& low = track.point(i);
