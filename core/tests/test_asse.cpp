@@ -213,6 +213,47 @@ TYPED_TEST(Asse, FilterFindsTheAnglesAndCarriesThem) {
   EXPECT_NEAR(static_cast<double>(b.along.x), std::cos(double(alpha)) * std::cos(double(beta)), 1e-6);
 }
 
+TEST(Asse, FilterCovarianceMovesAsItsState) {
+  // One step with a variance along one state at a time, against differences of the step itself.
+  const double size[] = {1e-2, 1e-4, 1e-4, 1e-4, 1e-4, 1e-4, 1e-3, 1e-3, 1e-3, 1e-4, 1e-4, 1e-4};
+  const auto after = [](int state, double change, bool with_P, double P[3][3]) {
+    alula::AsseFilter<double> f;
+    f.settings = exact_settings<double>();
+    alula::start(f);
+    for (auto& row : f.P)
+      for (double& p : row) p = 0.0;
+    f.V = 30.0;
+    f.alpha = 0.3;
+    f.beta = -0.2;
+    double* x[] = {&f.V,         &f.alpha,     &f.beta,      &f.tilt.x,    &f.tilt.y,    &f.tilt.z,
+                   &f.error_a.x, &f.error_a.y, &f.error_a.z, &f.error_w.x, &f.error_w.y, &f.error_w.z};
+    *x[state] += with_P ? 0.0 : change;
+    if (with_P) f.P[state][state] = change * change;
+    f.settings.sigma_tilt = 0.0;
+    f.settings.tilt_time = 1e9;
+    // A long step, in which the airspeed changes by a fifth.
+    alula::asse_detail::propagate(f, 0.2, Vec3<double>{-30.0, 2.0, 1.0}, Vec3<double>{-3.0, 1.0, 9.0},
+                                  Vec3<double>{0.2, 0.3, -0.1});
+    for (int i = 0; with_P && i < 3; ++i)
+      for (int j = 0; j < 3; ++j) P[i][j] = f.P[i][j];
+    return Vec3<double>{f.V, f.alpha, f.beta};
+  };
+  for (int state = 0; state < 12; ++state) {
+    const double h = size[state];
+    double P[3][3];
+    after(state, h, true, P);
+    const auto up = after(state, h, false, P), down = after(state, -h, false, P);
+    const double d[] = {0.5 * (up.x - down.x), 0.5 * (up.y - down.y), 0.5 * (up.z - down.z)};
+    const double of[] = {d[0] / h, d[1] / h, d[2] / h};
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        // 3 %: 0.06 rad turned in the step, half of it between an error's middle and its end.
+        EXPECT_NEAR(P[i][j] / (h * h), of[i] * of[j],
+                    0.03 * (1.0 + std::fabs(of[i])) * (1.0 + std::fabs(of[j])))
+            << state << i << j;
+  }
+}
+
 TEST(Asse, FilterTakesLateAirspeedsExactly) {
   // The same airspeeds a quarter of a second late, known as such: the same angles.
   double found[2];

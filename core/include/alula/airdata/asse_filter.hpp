@@ -128,13 +128,14 @@ inline void propagate(AsseFilter<T>& f, T dt, const Vec3<T>& a_measured, const V
   const T keep = s.tilt_time > T(0) ? std::exp(-dt / s.tilt_time) : T(0);
   const Vec3<T> columns[3] = {R * b.along, (before * b.cos_beta) * (R * b.by_alpha),
                               before * (R * b.by_beta)};
+  const Vec3<T> middle = T(0.5) * (R * v + then);  // on which wrong rates act
   T F[3][n];
   const T noise_a = dt * (s.density_a * s.density_a + s.density_wind * s.density_wind);
   const T noise_w = dt * s.density_w * s.density_w;
   Vec3<T> by_w[3];
   for (int i = 0; i < 3; ++i) {
-    const Vec3<T> r = rows[i], tilted = dt * cross(r, gravity), turned = dt * cross(r, v);
-    by_w[i] = cross(r, v);
+    const Vec3<T> r = rows[i], tilted = dt * cross(r, gravity), turned = dt * cross(r, middle);
+    by_w[i] = cross(r, middle);
     for (int j = 0; j < 3; ++j) F[i][j] = dot(r, columns[j]);
     F[i][3] = tilted.x, F[i][4] = tilted.y, F[i][5] = tilted.z;
     F[i][6] = -dt * r.x, F[i][7] = -dt * r.y, F[i][8] = -dt * r.z;
