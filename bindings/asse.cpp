@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "alula/airdata/asse_filter.hpp"
-#include "alula/airdata/asse_window.hpp"
+#include "alula/airdata/asse_solve.hpp"
 #include "alula/airdata/asse_zero_order.hpp"
 #include "bind.hpp"
 
@@ -28,7 +28,7 @@ template <class T>
 alula::AsseSettings<T> settings_of(const Vector& v) {
   check(v.shape(0) == kSettings, "settings: expected 17 numbers");
   const auto at = [&](std::size_t i) { return static_cast<T>(v(i)); };
-  return {at(0), at(1), at(2),  at(3),  at(4),  at(5),  at(6),  at(7), at(8),
+  return {at(0), at(1),  at(2),  at(3),  at(4),  at(5),  at(6),  at(7), at(8),
           at(9), at(10), at(11), at(12), at(13), at(14), at(15), at(16)};
 }
 
@@ -61,8 +61,8 @@ template <class T>
 void write(double* out, const alula::AsseEstimate<T>& e, const alula::ReportedAngle<T>& alpha,
            const alula::ReportedAngle<T>& beta) {
   const double nan = std::nan("");
-  const T values[] = {e.V, e.alpha, e.beta, e.P[0][0], e.P[0][1], e.P[0][2],
-                      e.P[1][1], e.P[1][2], e.P[2][2]};
+  const T values[] = {e.V,       e.alpha,   e.beta,    e.P[0][0], e.P[0][1],
+                      e.P[0][2], e.P[1][1], e.P[1][2], e.P[2][2]};
   for (int i = 0; i < 9; ++i) out[i] = static_cast<double>(values[i]);
   out[9] = alpha.observable;
   out[10] = beta.observable;
@@ -160,13 +160,16 @@ void bind_asse(nb::module_& m) {
             there = j >= 0 && j < last;
             if (!there) break;
             const auto at = static_cast<std::size_t>(j);
-            samples[k] = {t(here) - t(at), V(at), V_dot(at), row(a, at),
-                          row(gained, here) - row(gained, at), row(w, at)};
+            samples[k] = {
+                t(here) - t(at), V(at), V_dot(at), row(a, at), row(gained, here) - row(gained, at),
+                row(w, at)};
           }
           alula::ZeroOrderSolution<double> s;
-          if (!there || !update(scheme, t(here), samples, static_cast<int>(equations), s))
-            continue;
-          const double all[] = {s.alpha, s.beta, s.existence_alpha, s.existence_beta,
+          if (!there || !update(scheme, t(here), samples, static_cast<int>(equations), s)) continue;
+          const double all[] = {s.alpha,
+                                s.beta,
+                                s.existence_alpha,
+                                s.existence_beta,
                                 scheme.alpha.observable ? 1.0 : 0.0,
                                 scheme.beta.observable ? 1.0 : 0.0,
                                 scheme.alpha.ever ? scheme.alpha.age : std::nan(""),
@@ -177,8 +180,8 @@ void bind_asse(nb::module_& m) {
         return counts(scheme.rejected);
       },
       nb::arg("t"), nb::arg("V"), nb::arg("V_dot"), nb::arg("a"), nb::arg("w"), nb::arg("gained"),
-      nb::arg("offsets"), nb::arg("every"), nb::arg("threshold"),
-      nb::arg("equation_error"), nb::arg("alpha"), nb::arg("beta"), nb::arg("out"),
+      nb::arg("offsets"), nb::arg("every"), nb::arg("threshold"), nb::arg("equation_error"),
+      nb::arg("alpha"), nb::arg("beta"), nb::arg("out"),
       "Zero-order scheme over a recording. t, V, V_dot (n,); a, w, gained (n, 3): acceleration\n"
       "against the air, rates, integral of a since the start, body axes. offsets: samples back\n"
       "(negative: ahead) of the further equations. Solves at every `every`th sample from the last\n"

@@ -12,6 +12,7 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from alula.aircraft import load_aircraft
 from alula.airdata.asse import AsseRecord, AsseSettings, gravity_in_body
@@ -51,7 +52,7 @@ class Flown:
     w: Array
     euler: Array
 
-    def between(self, t: Array) -> Array:
+    def between(self, t: Array) -> NDArray[np.bool_]:
         """Which of times t (n,) lie between first and last control input."""
         return np.asarray((t >= self.first) & (t <= self.last))
 
@@ -69,15 +70,15 @@ def flown(kind: str) -> Flown:
     """'stall' or 'sweep'."""
     frame = airframe_of(load_aircraft(AIRCRAFT), engines="modeled")
     model = load_model(AIRCRAFT.with_name("sportstar_aero.toml"))
-    channel, signal, V, seconds, last = {
+    chosen: dict[str, tuple[str, Signal, float, float, float]] = {
         "stall": ("de", STALL, 32.0, 14.5, 14.0),
         "sweep": ("dr", SWEEP, 38.0, 18.5, 2.0 + sum(RUDDER) + 0.5),
-    }[kind]
+    }
+    channel, signal, V, seconds, last = chosen[kind]
     start = trim(frame, model, Condition(V, 1500.0))
-    t = np.arange(round(seconds / STEP) + 1) * STEP
-    moved: Signal = signal
+    t: Array = np.arange(round(seconds / STEP) + 1) * STEP
     controls: dict[str, Array | float] = {**start.inputs}
-    controls[channel] = start.controls[channel] + moved.value(t)
+    controls[channel] = start.controls[channel] + signal.value(t)
     m = fly(frame, model, start.state, t, controls).motion
     return Flown(
         excited="alpha" if kind == "stall" else "beta", first=2.0, last=last,

@@ -94,13 +94,14 @@ def asse_noisy(quick: bool) -> tuple[str, bool]:
         flight = flown(kind)
         name = flight.excited
         other = "beta" if name == "alpha" else "alpha"
-        by_filter, by_window, squares = Tally(), Tally(), []
+        by_filter, by_window = Tally(), Tally()
+        squares: list[float] = []
         for seed in range(runs):
             made = sensed(flight, seed)
             by_filter.add(flight, made, estimate_filter(made.record, made.settings))
             window = estimate_window(made.record, made.settings, every=10)
             by_window.add(flight, made, window)
-            squares.append(np.mean(printed(flight, made) ** 2))
+            squares.append(float(np.mean(printed(flight, made) ** 2)))
         share = by_filter.reported[name] / by_filter.samples
         one, both = float(np.mean(by_filter.nees_one)), float(np.mean(by_filter.nees_both))
         low_1, high_1 = bounds(runs, 1)
@@ -110,9 +111,9 @@ def asse_noisy(quick: bool) -> tuple[str, bool]:
         holds &= low_1 < one < high_1 and low_2 < both < high_2 and quiet >= 0.95
         words.append(
             f"{kind}, {runs} seeds: {name} rms {by_filter.rms(name):.2f} deg on {share:.0%}, NEES "
-            f"{one:.2f} in {low_1:.2f} to {high_1:.2f}, of both angles {both:.2f} in {low_2:.2f} to "
-            f"{high_2:.2f}; {other} inside its interval or not observable on {quiet:.1%}; window of "
-            f"20 samples: rms {by_window.rms(name):.2f} deg on "
+            f"{one:.2f} in {low_1:.2f} to {high_1:.2f}, of both angles {both:.2f} in {low_2:.2f} "
+            f"to {high_2:.2f}; {other} inside its interval or not observable on {quiet:.1%}; "
+            f"window of 20 samples: rms {by_window.rms(name):.2f} deg on "
             f"{by_window.reported[name] / by_window.samples:.0%}; printed scheme: rms "
             f"{float(np.sqrt(np.mean(squares))) / DEG:.0f} deg"
         )

@@ -8,7 +8,7 @@
 
 #include "allocations.hpp"
 #include "alula/airdata/asse_filter.hpp"
-#include "alula/airdata/asse_window.hpp"
+#include "alula/airdata/asse_solve.hpp"
 #include "alula/airdata/asse_zero_order.hpp"
 
 namespace {
@@ -210,7 +210,8 @@ TYPED_TEST(Asse, FilterFindsTheAnglesAndCarriesThem) {
   EXPECT_TRUE(lost);
   EXPECT_GT(f.reported_alpha.age, T(10));
   EXPECT_GT(static_cast<double>(f.P[1][1]), 4.0 * before);
-  EXPECT_NEAR(static_cast<double>(b.along.x), std::cos(double(alpha)) * std::cos(double(beta)), 1e-6);
+  EXPECT_NEAR(static_cast<double>(b.along.x), std::cos(double(alpha)) * std::cos(double(beta)),
+              1e-6);
 }
 
 TEST(Asse, FilterCovarianceMovesAsItsState) {
@@ -225,15 +226,16 @@ TEST(Asse, FilterCovarianceMovesAsItsState) {
     f.V = 30.0;
     f.alpha = 0.3;
     f.beta = -0.2;
-    double* x[] = {&f.V,         &f.alpha,     &f.beta,      &f.tilt.x,    &f.tilt.y,    &f.tilt.z,
-                   &f.error_a.x, &f.error_a.y, &f.error_a.z, &f.error_w.x, &f.error_w.y, &f.error_w.z};
+    double* x[] = {&f.V,         &f.alpha,     &f.beta,      &f.tilt.x,
+                   &f.tilt.y,    &f.tilt.z,    &f.error_a.x, &f.error_a.y,
+                   &f.error_a.z, &f.error_w.x, &f.error_w.y, &f.error_w.z};
     *x[state] += with_P ? 0.0 : change;
     if (with_P) f.P[state][state] = change * change;
     f.settings.sigma_tilt = 0.0;
     f.settings.tilt_time = 1e9;
     // A long step, in which the airspeed changes by a fifth.
-    alula::asse_detail::propagate(f, 0.2, Vec3<double>{-30.0, 2.0, 1.0}, Vec3<double>{-3.0, 1.0, 9.0},
-                                  Vec3<double>{0.2, 0.3, -0.1});
+    alula::asse_detail::propagate(f, 0.2, Vec3<double>{-30.0, 2.0, 1.0},
+                                  Vec3<double>{-3.0, 1.0, 9.0}, Vec3<double>{0.2, 0.3, -0.1});
     for (int i = 0; with_P && i < 3; ++i)
       for (int j = 0; j < 3; ++j) P[i][j] = f.P[i][j];
     return Vec3<double>{f.V, f.alpha, f.beta};
@@ -288,8 +290,12 @@ alula::ZeroOrderSample<T> zero_order_sample(double t, double tau) {
     return Vec3<T>{static_cast<T>(x.x), static_cast<T>(x.y), static_cast<T>(x.z)};
   };
   const double slope = (Motion<T>(tau + h).V - Motion<T>(tau - h).V) / (2.0 * h);
-  return {static_cast<T>(t - tau), static_cast<T>(m.V), static_cast<T>(slope), cast(m.a),
-          cast(gained), cast(m.w)};
+  return {static_cast<T>(t - tau),
+          static_cast<T>(m.V),
+          static_cast<T>(slope),
+          cast(m.a),
+          cast(gained),
+          cast(m.w)};
 }
 
 TYPED_TEST(Asse, ZeroOrderErrorIsTheOneItExpects) {
@@ -415,7 +421,8 @@ TYPED_TEST(Asse, AllocatesNothing) {
     alula::add_airspeed(w, t, static_cast<T>(m.V));
     sum += alula::solve(w).V + f.V;
   }
-  alula::ZeroOrderSample<T> s[2] = {zero_order_sample<T>(1.0, 1.0), zero_order_sample<T>(1.0, 0.98)};
+  alula::ZeroOrderSample<T> s[2] = {zero_order_sample<T>(1.0, 1.0),
+                                    zero_order_sample<T>(1.0, 0.98)};
   sum += alula::zero_order(s, 2, T(0.1), T(0)).alpha;
   EXPECT_EQ(alula_test::allocations(), before);
   EXPECT_TRUE(std::isfinite(sum));

@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import astuple, dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
 from alula.base.arrays import Array, frozen
 from alula.base.messages import Message, refuse, warn
@@ -19,7 +20,7 @@ GRAVITY = 9.80665  # m/s2
 COLUMNS = 13
 REASONS = (
     ("not_finite", "finite numbers", "Mend or mark the channel."),
-    ("backward_time", "time that goes forward, airspeeds not too old", "Sort by time."),
+    ("backward_time", "time that goes forward, airspeeds not ahead or too old", "Sort by time."),
     ("slow", "airspeeds above the least one", "Give the airspeed once the aircraft flies."),
     ("outlier", "airspeeds near the expected ones", "Check the pitot tube and its noise."),
     ("gap", "samples without interruption", "The estimate started over there."),
@@ -137,8 +138,8 @@ class AsseResult:
     alpha: Array
     beta: Array
     covariance: Array
-    observable_alpha: Array
-    observable_beta: Array
+    observable_alpha: NDArray[np.bool_]
+    observable_beta: NDArray[np.bool_]
     age_alpha: Array
     age_beta: Array
     rejected: dict[str, int]

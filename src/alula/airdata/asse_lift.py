@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -26,7 +27,7 @@ def lift_angle(
     """Angles of attack (n,), rad, at which the model's CL (or -CZ) is the measured one.
 
     f: (n, 3) specific force, m/s2; V: (n,) m/s; rho: (n,) kg/m3; variables: the model's other
-    variables by name (n,), `qhat`, `de` and so on. engine_force: (n, 3) N, body axes, if it is known.
+    variables by name (n,), `qhat`, `de` and so on. engine_force: (n, 3) N, body axes, if known.
     NaN outside the range of alpha that the model is valid in, and where nothing solves it: an
     attached-flow model says nothing of a stall. Raises BadInput where the model has no lift.
     """
@@ -39,6 +40,14 @@ def lift_angle(
             found=", ".join(model.coefficients) or "none",
             do="Identify the lift too.",
         )
+    lift = [i for i, (name, _) in enumerate(model.terms) if name == coefficient]
+    only = replace(
+        model,
+        terms=tuple(model.terms[i] for i in lift),
+        values=model.values[lift],
+        covariance=None,
+        stall=None,
+    )
     V, rho = np.asarray(V, dtype=np.float64), np.asarray(rho, dtype=np.float64)
     pressure_area = 0.5 * rho * V**2 * model.reference.S
     engines = np.zeros_like(f) if engine_force is None else engine_force
@@ -47,11 +56,11 @@ def lift_angle(
     given = {name: np.asarray(x, dtype=np.float64) for name, x in variables.items()}
 
     def difference(alpha: Array) -> Array:
-        found = model.evaluate({**given, "alpha": alpha, "V": V})[coefficient]
+        found = only.evaluate({**given, "alpha": alpha, "V": V})[coefficient]
         if coefficient == "CZ":
             return np.asarray(found - force[:, 2] / pressure_area, dtype=np.float64)
-        lift = force[:, 0] * np.sin(alpha) - force[:, 2] * np.cos(alpha)
-        return np.asarray(found - lift / pressure_area, dtype=np.float64)
+        up = force[:, 0] * np.sin(alpha) - force[:, 2] * np.cos(alpha)
+        return np.asarray(found - up / pressure_area, dtype=np.float64)
 
     alpha = np.full(len(V), 0.5 * (low + high))
     step = 1e-4

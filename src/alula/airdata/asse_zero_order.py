@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from alula.airdata.asse import AsseRecord, rejections
 from alula.base.arrays import Array, frozen
@@ -32,8 +33,8 @@ class ZeroOrderResult:
     beta: Array
     existence_alpha: Array
     existence_beta: Array
-    observable_alpha: Array
-    observable_beta: Array
+    observable_alpha: NDArray[np.bool_]
+    observable_beta: NDArray[np.bool_]
     age_alpha: Array
     age_beta: Array
     rejected: dict[str, int]

@@ -1,6 +1,7 @@
 #pragma once
-// What the schemes for angle of attack and sideslip without vane or model share (ASSE: Lerro, Brandl,
-// Gili, Model-Free Scheme for Angle-of-Attack and Angle-of-Sideslip Estimation, J. Guidance 2020).
+// What the schemes for angle of attack and sideslip without vane or model share (ASSE: Lerro,
+// Brandl, Gili, Model-Free Scheme for Angle-of-Attack and Angle-of-Sideslip Estimation, J. Guidance
+// 2020).
 //
 // Body axes x forward, y right, z down. The specific force f is what accelerometers sense, -g at
 // rest; the air-relative velocity v obeys v' = a - w x v with a = f + gravity - wind acceleration.
@@ -59,10 +60,10 @@ inline void report(ReportedAngle<T>& angle, T value, bool observable, T dt) {
 // What was not taken up.
 struct AsseRejected {
   long not_finite = 0;
-  long backward = 0;   // time that does not go forward, or a measurement older than what is kept
-  long slow = 0;       // airspeed not above the least one
-  long outlying = 0;   // airspeed farther from the expected one than noise explains
-  long gaps = 0;       // interruptions after which a scheme starts over
+  long backward = 0;  // time that does not go forward, or a measurement older than what is kept
+  long slow = 0;      // airspeed not above the least one
+  long outlying = 0;  // airspeed farther from the expected one than noise explains
+  long gaps = 0;      // interruptions after which a scheme starts over
 };
 
 }  // namespace alula

@@ -13,20 +13,20 @@ template <class T>
 struct AsseFilter {
   static constexpr int n = 12;
   static constexpr T second_order_time = T(3);  // s
-  static constexpr int kMostOutliers = 25;  // in a row: then it is the filter that is wrong
+  static constexpr int kMostOutliers = 25;      // in a row: then it is the filter that is wrong
 
   AsseSettings<T> settings;
   T V{0};
-  T alpha{0}, beta{0};         // rad
-  Vec3<T> tilt;                // rad: true gravity is gravity + gravity x tilt
-  Vec3<T> error_a, error_w;    // m/s2, rad/s: what the sensors read too much
-  T P[n][n]{};                 // of V, alpha, beta, tilt, error_a, error_w
+  T alpha{0}, beta{0};       // rad
+  Vec3<T> tilt;              // rad: true gravity is gravity + gravity x tilt
+  Vec3<T> error_a, error_w;  // m/s2, rad/s: what the sensors read too much
+  T P[n][n]{};               // of V, alpha, beta, tilt, error_a, error_w
   AsseTrack<T> track;
-  AsseInput<T> input{};        // the last one
+  AsseInput<T> input{};  // the last one
   ReportedAngle<T> reported_alpha, reported_beta;
-  bool running = false;        // an airspeed has been seen
-  int outliers = 0;            // in a row
-  double last_V = 0.0;         // s, time stamp of the last airspeed
+  bool running = false;  // an airspeed has been seen
+  int outliers = 0;      // in a row
+  double last_V = 0.0;   // s, time stamp of the last airspeed
   bool any_V = false;
   AsseRejected rejected;
 };
@@ -68,8 +68,9 @@ inline bool measure(AsseFilter<T>& f, const T* H, T innovation, T r) {
   for (int i = 0; i < n; ++i) s += H[i] * PH[i];
   if (!(s > T(0)) || !(innovation * innovation <= f.settings.gate * f.settings.gate * s))
     return false;
-  T* state[n] = {&f.V,         &f.alpha,     &f.beta,      &f.tilt.x,    &f.tilt.y,    &f.tilt.z,
-                 &f.error_a.x, &f.error_a.y, &f.error_a.z, &f.error_w.x, &f.error_w.y, &f.error_w.z};
+  T* state[n] = {&f.V,         &f.alpha,     &f.beta,      &f.tilt.x,
+                 &f.tilt.y,    &f.tilt.z,    &f.error_a.x, &f.error_a.y,
+                 &f.error_a.z, &f.error_w.x, &f.error_w.y, &f.error_w.z};
   const T k = T(1) / s;
   for (int i = 0; i < n; ++i) {
     *state[i] += k * PH[i] * innovation;
@@ -116,8 +117,8 @@ inline void propagate(AsseFilter<T>& f, T dt, const Vec3<T>& a_measured, const V
   // uncertain by lasts as long as the angles stay wrong; as white noise it is that much stronger.
   const T bent = dot(a, b.along), pa = f.P[1][1], pb = f.P[2][2], pab = f.P[1][2];
   const T shorter = T(0.5) * dt * bent * (pa + pb);
-  const T unsure = dt * AsseFilter<T>::second_order_time * bent * bent *
-                   (pa * pa + pb * pb + T(2) * pab * pab);
+  const T unsure =
+      dt * AsseFilter<T>::second_order_time * bent * bent * (pa * pa + pb * pb + T(2) * pab * pab);
   f.V = V - shorter > least ? V - shorter : least;
   f.alpha = std::atan2(then.z, then.x);
   f.beta = std::atan2(then.y, std::hypot(then.x, then.z));
@@ -192,8 +193,8 @@ inline bool advance(AsseFilter<T>& f, const AsseInput<T>& u) {
     start(f.track, u.t, a, u.w);
   } else {
     if (f.running)
-      asse_detail::propagate(f, dt, T(0.5) * (a + f.track.a), T(0.5) * (u.gravity + f.input.gravity),
-                             T(0.5) * (u.w + f.track.w));
+      asse_detail::propagate(f, dt, T(0.5) * (a + f.track.a),
+                             T(0.5) * (u.gravity + f.input.gravity), T(0.5) * (u.w + f.track.w));
     if (f.track.here.t > T(1)) put_origin_here(f.track);
     advance(f.track, u.t, a, u.w);
   }
@@ -208,8 +209,7 @@ inline bool add_airspeed(AsseFilter<T>& f, double t, T V) {
   if (!std::isfinite(t) || !std::isfinite(V)) return ++f.rejected.not_finite, false;
   if (!(V > f.settings.least_V)) return ++f.rejected.slow, false;
   TrackPoint<T> p;
-  if ((f.any_V && !(t > f.last_V)) ||
-      !find(f.track, t - static_cast<double>(f.settings.delay), p))
+  if ((f.any_V && !(t > f.last_V)) || !find(f.track, t - static_cast<double>(f.settings.delay), p))
     return ++f.rejected.backward, false;
   f.last_V = t;
   f.any_V = true;
@@ -236,8 +236,12 @@ inline bool add_airspeed(AsseFilter<T>& f, double t, T V) {
   const T H[AsseFilter<T>::n] = {dot(d, b.along),
                                  f.V * b.cos_beta * dot(d, b.by_alpha),
                                  f.V * dot(d, b.by_beta),
-                                 by_tilt.x, by_tilt.y, by_tilt.z,
-                                 q.lag * d.x, q.lag * d.y, q.lag * d.z};
+                                 by_tilt.x,
+                                 by_tilt.y,
+                                 by_tilt.z,
+                                 q.lag * d.x,
+                                 q.lag * d.y,
+                                 q.lag * d.z};
   if (!asse_detail::measure(f, H, V - h, r)) {
     ++f.rejected.outlying;
     if (++f.outliers > AsseFilter<T>::kMostOutliers) asse_detail::forget_motion(f);

@@ -1,7 +1,7 @@
 #pragma once
-// The exact affine form. v' = a - w x v is linear in v, so that seen in the body axes of t, which do
-// not turn, the velocity at another time is v(t) + c(tau) with c = -(integral of a from tau to t):
-// a rotation and a shift, whatever the window. The track integrates both from rates and
+// The exact affine form. v' = a - w x v is linear in v, so that seen in the body axes of t, which
+// do not turn, the velocity at another time is v(t) + c(tau) with c = -(integral of a from tau to
+// t): a rotation and a shift, whatever the window. The track integrates both from rates and
 // accelerations and keeps the recent past.
 #include "alula/airdata/asse.hpp"
 
@@ -95,8 +95,8 @@ inline void put_origin_here(AsseTrack<T>& track) {
   track.turned = {{{T(1), T(0), T(0)}, {T(0), T(1), T(0)}, {T(0), T(0), T(1)}}};
 }
 
-// Goes on to a later time t, s, where the acceleration is a and the rates w, both lines in between: rotation
-// with the coning term, integral by Simpson's rule in turning axes.
+// Goes on to a later time t, s, where the acceleration is a and the rates w, both lines in between:
+// rotation with the coning term, integral by Simpson's rule in turning axes.
 template <class T>
 inline void advance(AsseTrack<T>& track, double t, const Vec3<T>& a, const Vec3<T>& w) {
   const T dt = static_cast<T>(t - track.now);

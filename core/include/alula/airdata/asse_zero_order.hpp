@@ -22,10 +22,10 @@ template <class T>
 struct ZeroOrderSettings {
   T threshold{T(200)};        // existence number below which an angle is not observable, 1/rad
   T equation_error{T(1e-9)};  // m/s2: what n over V is uncertain by, besides the zero order
-  T longest_step{T(0.2)};  // rad
-  T longest_gap{T(0.25)};  // s, over which the last solution is carried
-  T least_apart{T(0.02)};  // rad, half the distance of two roots that are told apart
-  T farthest{T(0.2)};      // rad from what is carried: the other root
+  T longest_step{T(0.2)};     // rad
+  T longest_gap{T(0.25)};     // s, over which the last solution is carried
+  T least_apart{T(0.02)};     // rad, half the distance of two roots that are told apart
+  T farthest{T(0.2)};         // rad from what is carried: the other root
   int iterations = 30;
 };
 
@@ -130,7 +130,8 @@ inline ZeroOrderSolution<T> zero_order(const ZeroOrderSample<T>* samples, int co
   for (int i = 0; i < count; ++i) {
     const auto& s = samples[i];
     const T n = (s.V * s.V_dot + dot(s.gained, s.a)) / V;
-    if (!std::isfinite(n) || !std::isfinite(s.lag) || !is_finite(s.a) || !is_finite(s.w)) return out;
+    if (!std::isfinite(n) || !std::isfinite(s.lag) || !is_finite(s.a) || !is_finite(s.w))
+      return out;
     e.n.push(n);
     e.m.push(s.a + s.lag * cross(s.a, w));  // (v + lag w x v) . a = v . (a + lag a x w)
     spacing = std::fmax(spacing, std::fabs(s.lag));
@@ -156,8 +157,8 @@ inline ZeroOrderSolution<T> zero_order(const ZeroOrderSample<T>* samples, int co
     } else if (longest < small && !(damping > T(0))) {
       out.converged = true;  // rounding of the cost is all that is left
     } else {
-      damping = std::fmax(T(10) * damping, std::fmax(T(0.1) * std::fmin(s.free_alpha, s.free_beta),
-                                                     tiny * size));
+      damping = std::fmax(T(10) * damping,
+                          std::fmax(T(0.1) * std::fmin(s.free_alpha, s.free_beta), tiny * size));
     }
   }
   const auto last = step(e, out.alpha, out.beta, T(0));
@@ -239,8 +240,7 @@ inline bool update(ZeroOrderScheme<T>& scheme, double t, const ZeroOrderSample<T
   scheme.started = true;
   scheme.a = here.a;
   scheme.w = here.w;
-  solution =
-      zero_order(samples, count, scheme.carried_alpha, scheme.carried_beta, scheme.settings);
+  solution = zero_order(samples, count, scheme.carried_alpha, scheme.carried_beta, scheme.settings);
   const T least = scheme.settings.threshold, far = scheme.settings.farthest;
   const bool near = std::fabs(solution.alpha - scheme.carried_alpha) < far &&
                     std::fabs(solution.beta - scheme.carried_beta) < far;
