@@ -20,6 +20,7 @@ from alula.cli.linearize import linearize
 from alula.cli.modes import modes
 from alula.cli.new import new
 from alula.cli.plan import plan
+from alula.cli.predict import predict
 from alula.cli.propeller import propeller
 from alula.cli.schema import schema
 from alula.cli.trim import trim
@@ -38,6 +39,7 @@ COMMANDS = (
     calibrate,
     identify,
     compare,
+    predict,
     plan,
     fly,
     trim,
