@@ -114,7 +114,8 @@ def asse_noisy(quick: bool) -> tuple[str, bool]:
             f"{one:.2f} in {low_1:.2f} to {high_1:.2f}, of both angles {both:.2f} in {low_2:.2f} "
             f"to {high_2:.2f}; {other} inside its interval or not observable on {quiet:.1%}; "
             f"window of 20 samples: rms {by_window.rms(name):.2f} deg on "
-            f"{by_window.reported[name] / by_window.samples:.0%}; printed scheme: rms "
+            f"{by_window.reported[name] / by_window.samples:.0%}, NEES "
+            f"{float(np.mean(by_window.nees_one)):.2f}; printed scheme: rms "
             f"{float(np.sqrt(np.mean(squares))) / DEG:.0f} deg"
         )
     return "; ".join(words), bool(holds)
