@@ -76,7 +76,7 @@ def flown(kind: str) -> Flown:
     }
     channel, signal, V, seconds, last = chosen[kind]
     start = trim(frame, model, Condition(V, 1500.0))
-    t: Array = np.arange(round(seconds / STEP) + 1) * STEP
+    t = np.asarray(np.arange(round(seconds / STEP) + 1) * STEP, dtype=np.float64)
     controls: dict[str, Array | float] = {**start.inputs}
     controls[channel] = start.controls[channel] + signal.value(t)
     m = fly(frame, model, start.state, t, controls).motion

@@ -24,7 +24,12 @@ def zero_order_figures(flight: Flown, equations: int) -> dict[str, tuple[float, 
     """By angle: share of the maneuver over the threshold, largest error there, deg."""
     offsets = tuple(range(1, equations))
     found = zero_order(
-        flight.record(), float(flight.alpha[0]), float(flight.beta[0]), offsets=offsets, every=10
+        flight.record(),
+        float(flight.alpha[0]),
+        float(flight.beta[0]),
+        offsets=offsets,
+        every=10,
+        equation_error=1e-9,
     )
     solved = flight.between(flight.t) & np.isfinite(found.alpha)
     out = {}

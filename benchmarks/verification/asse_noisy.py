@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.stats import chi2
 
 from alula.airdata.asse import AsseResult, estimate_filter, estimate_window
@@ -41,7 +42,7 @@ class Tally:
         during = flight.between(made.t) & np.isfinite(found.alpha)
         self.samples += int(during.sum())
         errors = np.stack([found.alpha - made.alpha, found.beta - made.beta], axis=1)
-        both = (
+        both: tuple[tuple[str, Array, Array, NDArray[np.bool_]], ...] = (
             ("alpha", errors[:, 0], found.sigma_alpha, found.observable_alpha),
             ("beta", errors[:, 1], found.sigma_beta, found.observable_beta),
         )

@@ -8,8 +8,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
-
 from alula.airdata.asse import AsseSettings
 from alula.core import ISA, core
 from verification.asse_flights import flown, sensed
@@ -22,7 +20,7 @@ def asse_speed(quick: bool) -> tuple[str, bool]:
     made = sensed(flown("sweep"), 0)
     settings = replace(AsseSettings(), block=0.0)  # a solution with every airspeed
     rounds = 10 if quick else 60
-    arrays = [np.ascontiguousarray(a) for a in made.record.arrays()]
+    arrays = made.record.arrays()
     window, window_float, step, step_float = core.asse_seconds(
         *arrays, settings.numbers(), 20, rounds
     )

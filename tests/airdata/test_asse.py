@@ -229,7 +229,9 @@ def test_bad_samples_are_counted_and_leave_the_rest() -> None:
     assert gap.rejected["gap"] == 1
     assert not gap.observable_alpha[400]
     assert gap.age_alpha[400] > 9.9
-    assert gap.observable_alpha[-1]
+    # the prior again, then what four seconds of motion show
+    assert gap.sigma_alpha[401] == pytest.approx(settings.first_sigma, rel=0.01)
+    assert gap.sigma_alpha[-1] < 0.7 * settings.first_sigma
 
 
 def test_impossible_requests_are_refused() -> None:

@@ -16,6 +16,8 @@ from alula.base.messages import BadInput
 from alula.model import AeroModel, Reference, aero_model, load_model
 from alula.simulate import Condition, SimulatedFlight, airframe_of, fly, trim
 from alula.simulate.inputs import Steps
+from verification.asse_noise_free import asse_noise_free
+from verification.asse_noisy import asse_noisy
 
 AIRCRAFT = Path(__file__).parents[2] / "aircraft" / "sportstar.toml"
 DEG = np.pi / 180.0
@@ -92,3 +94,15 @@ def test_model_without_lift_is_refused() -> None:
     one = np.ones(3)
     with pytest.raises(BadInput, match="lift"):
         lift_angle(model, mass=1.0, f=np.ones((3, 3)), V=one, rho=one, variables={})
+
+
+def test_stall_and_sweep_without_noise() -> None:
+    """Zero order over its threshold, its error measure, the exact form: the row itself."""
+    words, holds = asse_noise_free(quick=True)
+    assert holds, words
+
+
+def test_stall_and_sweep_with_noise() -> None:
+    """The row itself with 20 seeds."""
+    words, holds = asse_noisy(quick=True)
+    assert holds, words

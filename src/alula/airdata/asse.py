@@ -18,6 +18,7 @@ from alula.core import core
 
 GRAVITY = 9.80665  # m/s2
 COLUMNS = 13
+Arrays = tuple[Array, Array, Array, Array, Array, Array]
 REASONS = (
     ("not_finite", "finite numbers", "Mend or mark the channel."),
     ("backward_time", "time that goes forward, airspeeds not ahead or too old", "Sort by time."),
@@ -93,13 +94,13 @@ class AsseRecord:
     V: Array
     wind_rate: Array = field(default_factory=lambda: frozen(np.zeros((0, 3))))
 
-    def arrays(self) -> tuple[Array, ...]:
+    def arrays(self) -> Arrays:
         """t, f, w, gravity, wind_rate, V as the core takes them; BadInput where shapes differ."""
         n = len(np.atleast_1d(self.t))
         wind = self.wind_rate if np.size(self.wind_rate) else np.zeros((n, 3))
         given = {"t": self.t, "f": self.f, "w": self.w, "gravity": self.gravity,
                  "wind_rate": wind, "V": self.V}  # fmt: skip
-        out = []
+        out: list[Array] = []
         for name, values in given.items():
             array = np.ascontiguousarray(values, dtype=np.float64)
             shape = (n,) if name in ("t", "V") else (n, 3)
@@ -112,7 +113,7 @@ class AsseRecord:
                     do="Give one row per time.",
                 )
             out.append(array)
-        return tuple(out)
+        return out[0], out[1], out[2], out[3], out[4], out[5]
 
 
 def gravity_in_body(phi: Array, theta: Array, g: float = GRAVITY) -> Array:

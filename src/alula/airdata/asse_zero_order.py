@@ -60,15 +60,15 @@ def zero_order(
     offsets: Sequence[int] = (1,),
     every: int = 1,
     threshold: float = THRESHOLD,
-    equation_error: float = 1e-9,
+    equation_error: float = 0.05,
     V_dot: Array | None = None,
 ) -> ZeroOrderResult:
     """Angles at every `every`th sample from n + 1 equations, Eq. (20), from first angles, rad.
 
     offsets: samples back to the times of the further equations (1 to 3 of them, uneven if wished;
     negative: ahead, after the fact). V_dot: (n,) m/s2, else by differences of V. equation_error:
-    m/s2, what the measured side of an equation over V is uncertain by. Raises BadInput for shapes,
-    offsets and thresholds that are not possible.
+    m/s2, what the measured side of an equation over V is uncertain by; 1e-9 without noise. Raises
+    BadInput for shapes, offsets and thresholds that are not possible.
     """
     t, f, w, gravity, wind_rate, V = record.arrays()
     steps = np.array(offsets, dtype=np.float64)

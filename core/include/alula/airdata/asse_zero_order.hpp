@@ -21,7 +21,7 @@ struct ZeroOrderSample {
 template <class T>
 struct ZeroOrderSettings {
   T threshold{T(200)};        // existence number below which an angle is not observable, 1/rad
-  T equation_error{T(1e-9)};  // m/s2: what n over V is uncertain by, besides the zero order
+  T equation_error{T(0.05)};  // m/s2: what n over V is uncertain by, besides the zero order
   T longest_step{T(0.2)};     // rad
   T longest_gap{T(0.25)};     // s, over which the last solution is carried
   T least_apart{T(0.02)};     // rad, half the distance of two roots that are told apart
