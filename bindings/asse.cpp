@@ -63,7 +63,7 @@ void write(double* out, const alula::AsseEstimate<T>& e, const alula::ReportedAn
   const double nan = std::nan("");
   const T values[] = {e.V,       e.alpha,   e.beta,    e.P[0][0], e.P[0][1],
                       e.P[0][2], e.P[1][1], e.P[1][2], e.P[2][2]};
-  for (int i = 0; i < 9; ++i) out[i] = static_cast<double>(values[i]);
+  for (int i = 0; i < 9; ++i) out[i] = e.V > T(0) ? static_cast<double>(values[i]) : nan;
   out[9] = alpha.observable;
   out[10] = beta.observable;
   out[11] = alpha.ever ? static_cast<double>(alpha.age) : nan;
@@ -211,7 +211,7 @@ void bind_asse(nb::module_& m) {
             if (!std::isnan(V(i))) add_airspeed(window, t(i), V(i));
             if (!taken || i % static_cast<std::size_t>(every) != 0) continue;
             const auto e = solve(window);
-            if (window.count >= 3) write(o, e, window.alpha, window.beta);
+            write(o, e, window.alpha, window.beta);
           }
         }
         return counts(window.rejected);

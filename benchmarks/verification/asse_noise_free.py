@@ -31,7 +31,7 @@ def zero_order_figures(flight: Flown, equations: int) -> dict[str, tuple[float, 
         every=10,
         equation_error=1e-9,
     )
-    solved = flight.between(flight.t) & np.isfinite(found.alpha)
+    solved = flight.between(flight.t) & (np.arange(len(flight.t)) % 10 == 0)
     out = {}
     for name, x, truth, observable in (
         ("alpha", found.alpha, flight.alpha, found.observable_alpha),
@@ -61,7 +61,7 @@ def error_measures(flight: Flown) -> tuple[float, float]:
 def exact_figures(flight: Flown) -> dict[str, tuple[float, float]]:
     """By angle: share of the maneuver reported, largest error there, deg."""
     found = estimate_window(flight.record(1, 1000), EXACT, every=100)
-    solved = flight.between(flight.t) & np.isfinite(found.alpha)
+    solved = flight.between(flight.t) & (np.arange(len(flight.t)) % 100 == 0)
     out = {}
     for name, x, truth, taken in (
         ("alpha", found.alpha, flight.alpha, found.observable_alpha & solved),

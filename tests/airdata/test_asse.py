@@ -188,7 +188,7 @@ def test_delay_is_worked_through() -> None:
     at = np.arange(300, 801, 100)
     # 2e-3 rad: accelerations by differences at 100 Hz
     assert np.abs(known.alpha - alpha)[at].max() < 2e-3
-    assert np.abs(ignored.alpha - alpha)[at].max() > 1e-2
+    assert np.nanmax(np.abs(ignored.alpha - alpha)[at]) > 1e-2
     filtered = estimate_filter(late, replace(settings, delay=0.2))
     assert np.abs(filtered.alpha - alpha)[at].max() < 4e-3
 

@@ -158,7 +158,7 @@ inline AsseEstimate<T> solve(AsseWindow<T>& f) {
   x[p + 2] = f.beta.ever ? f.beta.value : s.first_beta;
   T cost = asse_detail::look_at(w, x), U[R][R];
   bool settled = false;
-  for (; out.iterations < 12 && !settled; ++out.iterations) {
+  for (; out.iterations < 12; ++out.iterations) {
     T step[R];
     if (cholesky<R>(w.A, U, n) < 0) return lost();
     for (int i = 0; i < R; ++i) step[i] = w.g[i];
@@ -168,25 +168,29 @@ inline AsseEstimate<T> solve(AsseWindow<T>& f) {
     step[p + 1] /= w.scale;
     step[p + 2] /= w.scale;
     const T angle = std::fmax(std::fabs(step[p + 1]), std::fabs(step[p + 2]));
+    settled = gain < T(1e-3);
+    if (settled) {  // what this step leaves is far below the noise; U is that of the covariance
+      for (int i = 0; i < n; ++i) x[i] += step[i];
+      break;
+    }
     T k = angle > T(0.3) ? T(0.3) / angle : T(1), then = cost, y[n];
     for (int tries = 0; tries < 4; ++tries, k *= T(0.3)) {
       for (int i = 0; i < n; ++i) y[i] = x[i] + k * step[i];
       then = asse_detail::look_at(w, y);
       if (then <= cost + T(1e-4)) break;
     }
-    if (!std::isfinite(then)) return lost();
+    if (!(then <= cost + T(1e-4))) return lost();
     for (int i = 0; i < n; ++i) x[i] = y[i];
     cost = then;
-    settled = gain < T(1e-4);
   }
-  if (cholesky<R>(w.A, U, n) < 0) return lost();
+  if (!settled) return lost();
   asse_detail::last_three(U, w.scale, out.P);
   out.V = x[p];
   out.alpha = x[p + 1];
   out.beta = x[p + 2];
   const T most = s.limit * s.limit;
-  out.observable_alpha = settled && out.P[1][1] < most;
-  out.observable_beta = settled && out.P[2][2] < most;
+  out.observable_alpha = out.P[1][1] < most;
+  out.observable_beta = out.P[2][2] < most;
   report(f.alpha, out.alpha, out.observable_alpha, dt);
   report(f.beta, out.beta, out.observable_beta, dt);
   return out;
