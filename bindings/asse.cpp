@@ -1,7 +1,10 @@
 // Angles of attack and sideslip without vanes over whole recordings: one call, results in the
 // caller's arrays.
+#include <nanobind/stl/tuple.h>
+
 #include <chrono>
 #include <cmath>
+#include <tuple>
 #include <vector>
 
 #include "alula/airdata/asse_filter.hpp"
@@ -32,8 +35,10 @@ alula::AsseSettings<T> settings_of(const Vector& v) {
           at(9), at(10), at(11), at(12), at(13), at(14), at(15), at(16)};
 }
 
-nb::tuple counts(const alula::AsseRejected& r) {
-  return nb::make_tuple(r.not_finite, r.backward, r.slow, r.outlying, r.gaps);
+using Counts = std::tuple<long, long, long, long, long>;
+
+Counts counts(const alula::AsseRejected& r) {
+  return {r.not_finite, r.backward, r.slow, r.outlying, r.gaps};
 }
 
 struct Recording {
@@ -176,7 +181,6 @@ void bind_asse(nb::module_& m) {
                                 scheme.beta.ever ? scheme.beta.age : std::nan("")};
           for (int c = 0; c < 8; ++c) o[c] = all[c];
         }
-        nb::gil_scoped_acquire acquire;
         return counts(scheme.rejected);
       },
       nb::arg("t"), nb::arg("V"), nb::arg("V_dot"), nb::arg("a"), nb::arg("w"), nb::arg("gained"),
@@ -265,8 +269,7 @@ void bind_asse(nb::module_& m) {
         const double window_f = window_seconds<float>(r, settings, capacity, rounds);
         const double filter = filter_seconds<double>(r, settings, rounds);
         const double filter_f = filter_seconds<float>(r, settings, rounds);
-        nb::gil_scoped_acquire acquire;
-        return nb::make_tuple(window, window_f, filter, filter_f);
+        return std::tuple<double, double, double, double>(window, window_f, filter, filter_f);
       },
       nb::arg("t"), nb::arg("f"), nb::arg("w"), nb::arg("gravity"), nb::arg("wind_rate"),
       nb::arg("V"), nb::arg("settings"), nb::arg("capacity"), nb::arg("rounds"),
