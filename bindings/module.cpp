@@ -13,7 +13,9 @@ NB_MODULE(ALULA_MODULE, m) {
   bind_recursive(m);
   bind_output_error(m);
   bind_asse(m);
-  bind_vortex_lattice(m);
   bind_propellers(m);
   bind_strip(m);
+#ifdef ALULA_HOST
+  bind_vortex_lattice(m);
+#endif
 }

@@ -22,7 +22,7 @@ from typing import Any
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "predict"))
 from lattice_shapes import light_airplane
 
-from alula.core import ISA, core
+from alula.core import host
 from alula.predict.vortex_lattice import vortex_lattice
 
 # Panels in all: (chordwise, spanwise of the half) of wing, tailplane and fin.
@@ -57,7 +57,7 @@ def measure(panels: int, rounds: int) -> dict[str, float]:
     runs = {
         "half": ours(panels),
         "both": ours(panels, symmetry=False),
-        "lu": lambda: core.lattice_factor_time(panels),
+        "lu": lambda: host.lattice_factor_time(panels),
     }
     best = dict.fromkeys(runs, float("inf"))
     for _ in range(rounds):
@@ -110,7 +110,7 @@ def check(quick: bool = False) -> tuple[str, bool]:
     words.append(
         f"largest process {memory[True] / 1e6:.0f} MB, both halves {memory[False] / 1e6:.0f} MB"
     )
-    words.append(f"{ISA}, one thread, whole call")
+    words.append("one thread, whole call")
     return "; ".join(words), good and ratio <= TIMES_LU
 
 
@@ -118,7 +118,7 @@ def bench_row(rounds: int = 6) -> dict[str, Any]:
     """The row of `make bench`: 2040 panels, beside the LU alone of the same run."""
     f = measure(AT, rounds)
     return {
-        "name": f"vortex_lattice_{AT}_{ISA}",
+        "name": f"vortex_lattice_{AT}",
         "ours_s": f["half"],
         "ours_both_halves_s": f["both"],
         "peer": "LU alone of the full matrix",

@@ -2,7 +2,7 @@
 
 The same bindings exist twice: `_core` for any processor, `_core_v3` for x86-64-v3 (AVX2, FMA).
 `ALULA_ISA=baseline` chooses the first; results agree to 1e-10 between them and to the last bit
-within one of them.
+within one of them. What never flies (the vortex lattice) is in `_core` alone, here as `host`.
 """
 
 from __future__ import annotations
@@ -22,4 +22,5 @@ else:
         except ImportError:  # an architecture for which it is not built
             core = _core
 
+host = _core
 ISA = "x86-64-v3" if core is not _core else "baseline"

@@ -10,7 +10,7 @@ from alula.aircraft.geometry import Geometry
 from alula.aircraft.geometry_check import shape_errors
 from alula.base.arrays import Array
 from alula.base.messages import BadInput, Message, note, refuse, warn
-from alula.core import core as compiled
+from alula.core import host as compiled
 from alula.model import Reference
 from alula.predict.panels import CONTROLS, Panels
 

@@ -15,7 +15,7 @@ import numpy as np
 from alula.aircraft.geometry import Geometry
 from alula.base.arrays import Array, frozen
 from alula.base.messages import Message, note, refuse, warn
-from alula.core import core as compiled
+from alula.core import host as compiled
 from alula.model import Reference
 from alula.predict.half_panels import Spacing
 from alula.predict.lattice_axes import MOTIONS
