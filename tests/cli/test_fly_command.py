@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from alula.simulate.virtual_loading import toml_text
-from cli.command import alula
+from cli.command import alula, assert_refused
 from simulate.virtual import AIRCRAFT, doublet, plan_tree
 
 
@@ -123,3 +125,38 @@ def test_plan_does_not_replace_another_file(tmp_path: Path) -> None:
     assert ran.code == 2
     assert ran.messages("output_not_writable")
     assert path.read_text() == "mine = 1\n"
+
+
+def test_sampled_aircraft(tmp_path: Path) -> None:
+    """Drawn by seed and number: the same bytes again, another aircraft with another number."""
+    arm_hawk = AIRCRAFT / "armhawk.toml"
+    model = tmp_path / "predicted.toml"
+    assert alula("predict", arm_hawk, "--V", 25, "--model", model).code == 0
+    plan = write(
+        tmp_path, aircraft=str(arm_hawk), model=str(model), conditions=[{"V": 25.0, "h": 300.0}]
+    )
+
+    def flown(name: str, *words: object) -> tuple[bytes, dict[str, Any]]:
+        ran = alula("fly", plan, "--out", tmp_path / name, "--json", "-", "--seed", 3, *words)
+        assert ran.code == 0, ran.err
+        (log,) = (tmp_path / name / "logs").glob("*.csv")
+        return log.read_bytes(), json.loads((tmp_path / name / "truth.json").read_text())
+
+    nominal, truth = flown("nominal")
+    assert "aircraft" not in truth
+    first, drawn = flown("first", "--sample", 1)
+    again, same = flown("again", "--sample", 1)
+    second, other = flown("second", "--sample", 2)
+    assert (first, drawn) == (again, same)
+    assert len({nominal, first, second}) == 3
+    # Flaps that never moved are in no formula, so that the project can be identified from.
+    assert "df" not in (tmp_path / "first" / "campaign.toml").read_text().split("[identify")[-1]
+    masses = [t["aircraft"]["loadings"]["nominal loading"]["mass"] for t in (drawn, other)]
+    assert masses[0] != masses[1]
+    assert all(abs(m / 6.5 - 1.0) < 0.1 for m in masses)  # five standard deviations of 2 %
+
+
+def test_sample_of_what_is_certain_is_refused(tmp_path: Path) -> None:
+    ran = alula("fly", write(tmp_path), "--out", tmp_path / "out", "--sample", 1, "--json", "-")
+    assert_refused(ran, "nothing_to_sample", "[uncertainty]")
+    assert not (tmp_path / "out").exists()

@@ -21,6 +21,14 @@ def fly(
         Path | None,
         typer.Option(metavar="FOLDER", help="Where to; default: PLAN's name without .toml, here."),
     ] = None,
+    sample: Annotated[
+        int | None,
+        typer.Option(
+            metavar="N",
+            min=1,
+            help="Fly the N-th aircraft drawn from the aircraft file's [uncertainty].",
+        ),
+    ] = None,
     json: JsonOption = "",
     seed: SeedOption = None,
     threads: Annotated[
@@ -47,7 +55,9 @@ def fly(
         folder = out or Path(plan.name).with_suffix("")
         size = plan.stat().st_size
         command.inputs = [SourceFile(str(plan), sha256(plan), size, size, 0, 0)]
-        found = fly_plan(asked, folder, seed=seed, threads=threads, progress=command.progress)
+        found = fly_plan(
+            asked, folder, seed=seed, threads=threads, sample=sample, progress=command.progress
+        )
         command.messages = [
             *found.messages,
             *(message for messages in found.failed.values() for message in messages),

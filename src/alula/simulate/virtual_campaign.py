@@ -32,6 +32,7 @@ from alula.simulate.virtual_loading import MODEL, Loading, loadings_of
 from alula.simulate.virtual_maneuvers import Condition, VirtualManeuver, maneuvers_of
 from alula.simulate.virtual_plan import Plan
 from alula.simulate.virtual_project import project_text
+from alula.simulate.virtual_sample import drawn
 from alula.simulate.virtual_sensing import channels_of, constants_of, errors_of, logged, sense
 
 Progress = Callable[[str], None]
@@ -83,18 +84,25 @@ def fly_plan(
     *,
     seed: int | None = None,
     threads: int = 0,
+    sample: int | None = None,
     progress: Progress = lambda _: None,
 ) -> Campaign:
     """Fly a plan and write it to `folder`, whole or not at all.
 
     seed: instead of the plan's. threads: maneuvers side by side; 0: as many as there are
-    processors. A maneuver that does not trim or that diverges is left out and named in `failed`.
+    processors. sample: fly the aircraft of that number drawn from its file's [uncertainty]. A
+    maneuver that does not trim or that diverges is left out and named in `failed`.
     Raises BadInput where nothing can be flown, or the folder holds something else.
     """
     begin = time.perf_counter()
     check_folder(folder)
     seed = plan.seed if seed is None else seed
     loadings = loadings_of(plan)
+    of_sample: dict[str, Any] = {}
+    said: list[Message] = []
+    if sample is not None:
+        loadings, flown_aircraft, message = drawn(loadings, seed, sample)
+        of_sample, said = {"aircraft": flown_aircraft}, [message]
     model = load_model(_model_path(plan))
     asked = maneuvers_of(plan)
     channels = channels_of(plan, loadings)
@@ -138,7 +146,7 @@ def fly_plan(
             save(new / loading.file, loading.text.encode())
         save(new / MODEL, model_text(model).encode())
         wind = dict(zip(("wind_n", "wind_e", "wind_d"), plan.wind, strict=True))
-        truth = {"parameters": model.params, "constants": {**constants, **wind}}
+        truth = {"parameters": model.params, "constants": {**constants, **wind}, **of_sample}
         save(new / TRUTH, (json.dumps(truth, indent=1) + "\n").encode())
         text = project_text(plan, model, loadings, [w.plan for w in written], channels)
         save(new / PROJECT, text.encode())
@@ -148,7 +156,7 @@ def fly_plan(
     }  # fmt: skip
     return Campaign(
         folder, folder / PROJECT, written, failed, constants, seconds,
-        (*dict.fromkeys(m for x in loadings.values() for m in x.aircraft.messages),
+        (*said, *dict.fromkeys(m for x in loadings.values() for m in x.aircraft.messages),
          *said_once(written)),
     )  # fmt: skip
 

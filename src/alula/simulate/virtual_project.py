@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 
 from alula.model import AeroModel
@@ -102,10 +103,13 @@ def _unit(plan: Plan, name: str) -> str:
 
 
 def formulas_of(plan: Plan, model: AeroModel) -> dict[str, str]:
-    """The plan's formulas, or the model's own with a constant each."""
+    """The plan's formulas, or the model's own with a constant each, less flaps that never move."""
     formulas = dict(plan.identify)
+    moved = any(c.df_deg for c in plan.conditions)
     for name, formula in () if formulas else model.formulas.items():
         terms = [term.strip() for term in formula.split(" + ")]
+        terms = [x for x in terms if moved or not re.search(r"\bdf\b", x)]
+        formula = " + ".join(terms)
         formulas[name] = formula if "1" in terms else " + ".join(["1", *terms])
     return formulas
 
