@@ -200,7 +200,8 @@ ProbeStatus::Value probe_flow(const Probe<S, Side, Center>& probe, const ProbePr
     if (largest < enough && std::abs(dq) < enough * q) {
       const S alpha = std::atan(Z), beta = std::atan(Y / std::sqrt(S(1) + Z * Z));
       const bool seen = f.least_cosine >= std::cos(probe.widest);
-      if (!seen || std::abs(alpha) > probe.domain || std::abs(beta) > probe.domain)
+      const S border = probe.domain + S(1e-5);  // rounding does not turn the border away
+      if (!seen || std::abs(alpha) > border || std::abs(beta) > border)
         return ProbeStatus::outside_domain;
       flow = {q * size, alpha, beta, i};
       return ProbeStatus::ok;

@@ -51,7 +51,8 @@ ProbeStatus::Value probe_lookup(const ProbeTable<S, Stored>& table, const ProbeP
                f * ((S(1) - g) * S(high[k]) + g * S(high[k + 3]));
   const S alpha = std::atan(found[1]);
   const S beta = std::atan(found[0] / std::sqrt(S(1) + found[1] * found[1]));
-  if (!(std::abs(alpha) <= table.domain && std::abs(beta) <= table.domain))
+  const S border = table.domain + S(1e-5);
+  if (!(std::abs(alpha) <= border && std::abs(beta) <= border))
     return ProbeStatus::outside_domain;  // NaN from a node without a flow ends here too
   flow = {q * found[2], alpha, beta, 0};
   return ProbeStatus::ok;
