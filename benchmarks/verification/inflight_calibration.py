@@ -27,7 +27,7 @@ from alula.simulate.pilot import Pilot
 from alula.simulate.pilot_law import holding
 
 AIRCRAFT = Path(__file__).parents[2] / "aircraft"
-SPEED, HEIGHT, STEP, RATE = 45.0, 1000.0, 0.02, 10.0
+SPEED, HEIGHT, STEP = 45.0, 1000.0, 0.02
 VANES = (1.5, -3.0, 0.0)  # m from the center of gravity, on the wing
 SEEDS, FEW, SECONDS = 40, 4, 300.0
 LEAST = 0.90  # share of 95 % intervals that hold; 40 seeds of 6 parameters: 0.95 less 3.5 sigma
@@ -102,33 +102,39 @@ def flown(seed: int, seconds: float, straight: bool = False, sigma: float = 1.0)
 def record(flight: SimulatedFlight, truth: Truth, seed: int) -> AirDataRecord:
     """What the sensors made of the flight."""
     e, r, m = truth.errors, np.random.default_rng([13, seed]), flight.motion
-    every = round(1.0 / (RATE * STEP))
-    t = m.t[::every]
+    t, n = m.t, len(m.t)
     rates = np.column_stack([m.p, m.q, m.r])
     center = flow_angles(flight.air_velocity)
     vane = flow_angles(velocity_at(flight.air_velocity, rates, VANES))
-    n = len(t)
 
     def noisy(x: Array, sigma: float) -> Array:
-        return np.asarray(x[::every] + sigma * r.standard_normal(n))
+        return np.asarray(x + sigma * r.standard_normal(n))
+
+    def gps(x: Array, sigma: float) -> Array:
+        own = np.arange(0.0, t[-1] + 0.1, 0.2)  # 5 Hz
+        late = np.interp(own - e["gps_delay"], t, x) + sigma * r.standard_normal(len(own))
+        return np.interp(t, own, late)
 
     deg = float(np.radians(1.0))
-    late = np.column_stack(
-        [np.interp(m.t - e["gps_delay"], m.t, column) for column in flight.velocity.T]
-    )
     euler = attitudes(flight.plant_states)[0]
     readings = {
         "V": noisy((1.0 + e["k_V"]) * center[0], 0.3),
         "alpha": noisy((1.0 + e["k_alpha"]) * vane[1] + e["b_alpha"], 0.2 * deg),
         "beta": noisy((1.0 + e["k_beta"]) * vane[2] + e["b_beta"], 0.2 * deg),
-        "h_gps": noisy(m.h, 1.0),
-        "p": noisy(m.p, 0.1 * deg), "q": noisy(m.q, 0.1 * deg), "r": noisy(m.r, 0.1 * deg),
-    }  # fmt: skip
-    readings["h"] = noisy(m.h - e["static_error"] * center[0] ** 2 / 19.6133 + 12.0, 0.5)
+        "h": noisy(m.h - e["static_error"] * center[0] ** 2 / 19.6133 + 12.0, 0.5),
+        "h_gps": gps(m.h, 1.0),
+    }
+    for k, name in enumerate(("de", "da", "dr")):
+        readings[name] = noisy(flight.inputs[:, k], 0.05 * deg)
+    for name in ("p", "q", "r"):
+        bias = 0.2 * deg * r.standard_normal()
+        readings[name] = noisy(getattr(m, name) + bias, 0.2 * deg)
+    for name in ("ax", "ay", "az"):
+        readings[name] = noisy(getattr(m, name) + 0.05 * r.standard_normal(), 0.1)
     for k, name in enumerate(("phi", "theta", "psi")):
         readings[name] = noisy(np.unwrap(euler[:, k]) + e[f"b_{name}"], 0.1 * deg)
     for k, name in enumerate(("north", "east", "down")):
-        readings[f"v_{name}"] = noisy(late[:, k], 0.1)
+        readings[f"v_{name}"] = gps(flight.velocity[:, k], 0.1)
     return AirDataRecord(t, readings, {"alpha": VANES, "beta": VANES})
 
 

@@ -16,7 +16,9 @@ from typing import Any, Literal
 import numpy as np
 from scipy import stats
 
+from alula.airdata.inflight_instruments import WEAKEST, first_stage, instruments
 from alula.airdata.inflight_model import UNKNOWNS, Model, autoregression, model_of, whitened
+from alula.airdata.inflight_motion import prepared
 from alula.airdata.inflight_record import AirDataRecord
 from alula.base.arrays import Array, frozen
 from alula.base.coloured import coloured_covariance
@@ -28,6 +30,8 @@ WIND = ("wind_north", "wind_east", "wind_down")
 # Standard error from which on a parameter is not determined; one that is fine for any value.
 LIMITS = {"1": (0.04, 0.01), "rad": (0.02, 0.002), "m/s": (2.0, 0.3), "s": (0.5, 0.02),
           "m": (30.0, 1.0)}  # fmt: skip
+# Standard errors of what sampling and the smoothing of the motion leave (calm air shows them).
+FLOOR = {"1": 0.003, "rad": 3.5e-4}
 SPREAD = 0.1  # 1 - |mean direction of flight|: headings over 45 deg to either side
 TIED = 0.7  # correlation from which on a parameter is named
 ITERATIONS, SETTLED = 25, 0.02  # of a standard error
@@ -63,7 +67,7 @@ class InFlightCalibration:
     parameters: sought ones, wind, and what was known before (attitude biases, GPS delay), each
     with interval and verdict. covariance: of them, in their order. spread: 1 - |mean direction|,
     0 for a straight flight. resid: (n, m) reading less foretold one, by `outputs`. used: samples.
-    rich: whether airspeed and wind are told apart.
+    gps_delay: s, that was found and removed beforehand; None where it is a parameter.
     """
 
     parameters: tuple[Parameter, ...]
@@ -74,6 +78,7 @@ class InFlightCalibration:
     resid: Array
     used: int
     iterations: int
+    gps_delay: float | None = None
     messages: tuple[Message, ...] = ()
 
     def __getitem__(self, name: str) -> Parameter:
@@ -138,6 +143,7 @@ class InFlightCalibration:
                 for j, n in enumerate(self.outputs)
             },
             "iterations": self.iterations,
+            "gps_delay": self.gps_delay,
         }
 
     def summary(self) -> str:
@@ -168,7 +174,8 @@ def calibrate_in_flight(
     without: unknowns that are taken as zero. Raises BadInput where the fit does not settle. A
     parameter that the flight does not determine reads 'not_identifiable' and has no value.
     """
-    model = model_of(record, without)
+    record, delay = prepared(record)
+    model = model_of(record, without if delay is None else (*without, "gps_delay"))
     sizes = {name: UNKNOWNS[name][1] for name in model.names}
     for name, size in (known or {}).items():
         if name not in UNKNOWNS or (size is not None and not size > 0.0):
@@ -184,13 +191,13 @@ def calibrate_in_flight(
     prior = np.array([0.0 if sizes[n] is None else 1.0 / float(sizes[n] or 1.0) ** 2
                       for n in model.names])  # fmt: skip
     values, fit, iterations = _fitted(model, prior)
-    white, covariance, dof = _covariance(fit, prior)
+    white, covariance, dof = _covariance(fit, prior, model.names)
     spread = _spread(model, values)
     residuals = model.residuals(values)
     found = InFlightCalibration(
-        _parameters(model.names, values, white, covariance, dof, spread),
+        _parameters(model.names, values, white, covariance, dof, spread, fit.strength),
         frozen(covariance), spread, record.t, model.outputs, frozen(residuals),
-        int(np.sum(np.isfinite(fit.residual).any(axis=1))), iterations, record.messages,
+        int(np.sum(np.isfinite(fit.residual).any(axis=1))), iterations, delay, record.messages,
     )  # fmt: skip
     return replace(found, messages=(*record.messages, *_remarks(found)))
 
@@ -200,6 +207,7 @@ class _Fit:
     residual: Array  # (n, m), whitened, unit variance
     slopes: Array  # (n, m, k)
     dispersion: Array  # (k, k)
+    strength: dict[str, float]  # F of the instruments by scale error
 
 
 def _fitted(model: Model, prior: Array) -> tuple[Array, _Fit, int]:
@@ -210,24 +218,29 @@ def _fitted(model: Model, prior: Array) -> tuple[Array, _Fit, int]:
     for iteration in range(1, ITERATIONS + 1):
         residual, slopes = model.residuals(values), model.jacobian(values)
         if iteration > 2:
-            filters = [autoregression(r, largest) for r in residual.T]
+            # Heights are smooth: a long memory would foretell them by themselves.
+            filters = [
+                autoregression(r, 3 if name == "h" else largest)
+                for name, r in zip(model.outputs, residual.T, strict=True)
+            ]
         r, x = whitened(residual, filters), whitened(slopes, filters)
         good = np.isfinite(r) & np.isfinite(x).all(axis=2)
         r, x = np.where(good, r, 0.0), np.where(good[..., None], x, 0.0)
         size = np.sqrt(np.sum(r**2, axis=0) / np.maximum(1, np.sum(good, axis=0)))
         size = np.where(size > 0.0, size, 1.0)
         r, x = r / size, x / size[:, None]
-        information = np.einsum("nmi,nmj->ij", x, x) + np.diag(prior)
+        z, strength = _instrumented(model, values, x, good, filters)
+        information = np.einsum("nmi,nmj->ij", z, z) + np.diag(prior)
         scale = 1.0 / np.sqrt(np.maximum(np.diag(information), 1e-300))
         # What nothing determines is left where it is: its variance is what tells.
         inverse = np.linalg.pinv(information * np.outer(scale, scale), rcond=1e-12, hermitian=True)
         dispersion = inverse * np.outer(scale, scale)
-        step = dispersion @ (np.einsum("nmi,nm->i", x, r) - prior * values)
+        step = dispersion @ (np.einsum("nmi,nm->i", z, r) - prior * values)
         se = np.sqrt(np.maximum(np.diag(dispersion), 1e-300))
         step *= min(1.0, 20.0 / max(1e-12, float(np.max(np.abs(step)))))  # 20 m/s, rad: far enough
         values = values + step
         if iteration > 4 and np.all(np.abs(step) <= SETTLED * se):
-            return values, _Fit(np.where(good, r, np.nan), x, dispersion), iteration
+            return values, _Fit(np.where(good, r, np.nan), z, dispersion, strength), iteration
     raise refuse(
         "not_settled",
         where="in-flight calibration",
@@ -237,7 +250,32 @@ def _fitted(model: Model, prior: Array) -> tuple[Array, _Fit, int]:
     )
 
 
-def _covariance(fit: _Fit, prior: Array) -> tuple[Array, Array, Array]:
+def _instrumented(
+    model: Model, values: Array, x: Array, good: Any, filters: list[Array]
+) -> tuple[Array, dict[str, float]]:
+    """Slopes (n, m, k) whose vane columns are the pilot's doing only, and how strong that is."""
+    out, strength = x.copy(), {}
+    speed = np.linalg.norm(model.velocity(dict(zip(model.names, values, strict=True))), axis=1)
+    for j, output in enumerate(model.outputs):
+        kind = "beta" if output == "beta_flank" else output
+        name = f"k_{kind}"
+        if kind not in ("alpha", "beta") or name not in model.names:
+            continue
+        by = instruments(model.record, kind, speed)
+        by = whitened(by[:, None, :], [filters[j]])[:, 0]
+        known = good[:, j] & np.isfinite(by).all(axis=1)
+        k = model.names.index(name)
+        others = np.delete(x[:, j], k, axis=1)
+        others = others[:, np.any(others[known] != 0.0, axis=0)]
+        fitted, strength[name] = first_stage(x[known, j, k], others[known], by[known])
+        out[:, j, k] = 0.0
+        out[known, j, k] = fitted
+    return out, strength
+
+
+def _covariance(
+    fit: _Fit, prior: Array, names: tuple[str, ...]
+) -> tuple[Array, Array, Array]:
     """Plain and coloured covariance (k, k) and degrees of freedom (k,)."""
     D, known = fit.dispersion, np.isfinite(fit.residual)
     r = np.where(known, fit.residual, 0.0)
@@ -247,6 +285,9 @@ def _covariance(fit: _Fit, prior: Array) -> tuple[Array, Array, Array]:
     # Never below what white residuals give: the colour that is left is estimated, too.
     grown = np.sqrt(np.maximum(1.0, np.diag(D) / np.maximum(np.diag(whole), 1e-300)))
     covariance = whole * np.outer(grown, grown)
+    covariance[np.diag_indices_from(covariance)] += [
+        FLOOR.get(UNKNOWNS[n][0], 0.0) ** 2 if n in SOUGHT else 0.0 for n in names
+    ]
     # What was known before is known exactly: degrees of freedom of the flight's share only.
     share = np.clip(np.diag(found.corrected) / np.maximum(np.diag(whole), 1e-300), 1e-3, 1.0)
     return D, covariance, np.minimum(found.dof / share**2, 1e6)
@@ -268,6 +309,7 @@ def _parameters(
     covariance: Array,
     dof: Array,
     spread: float,
+    strength: Mapping[str, float],
 ) -> tuple[Parameter, ...]:
     se = np.sqrt(np.maximum(np.diag(covariance), 0.0))
     plain = np.sqrt(np.maximum(np.diag(white), 0.0))
@@ -281,6 +323,7 @@ def _parameters(
         half = float(stats.t.ppf(0.975, dof[k])) * float(se[k])
         # On one heading a wind along the flight does what an airspeed error does.
         apart = name not in ("k_V", "wind_north", "wind_east") or not straight
+        apart &= strength.get(name, np.inf) > WEAKEST
         if not (se[k] <= lost and apart):
             verdict = "not_identifiable"
             with np.errstate(all="ignore"):
@@ -290,7 +333,7 @@ def _parameters(
                 for n, c in zip(names, row, strict=True)
                 if n != name and abs(c) > TIED
             ]
-            if not apart and not tied:
+            if not apart and not tied and name in ("k_V", *WIND):
                 tied = [(n, 1.0) for n in ("k_V", *WIND[:2]) if n != name]
         elif abs(value) > 2.0 * se[k] or se[k] < fine:
             verdict = "ok"

@@ -37,7 +37,7 @@ UNKNOWNS: dict[str, tuple[str, float | None]] = {
     "b_psi": ("rad", float(np.radians(1.0))),
     "gps_delay": ("s", 0.3),
     "h_offset": ("m", None),
-    "h_scale": ("1", 0.05),
+    "h_scale": ("1", 0.03),
 }
 
 
@@ -96,7 +96,7 @@ class Model:
 
 
 def model_of(record: AirDataRecord, without: tuple[str, ...] = ()) -> Model:
-    """The model of a record; `without`: unknowns that are taken as zero."""
+    """The model of a prepared record; `without`: unknowns that are taken as zero."""
     have = record.readings
     outputs = ["V"]
     names = ["k_V"]

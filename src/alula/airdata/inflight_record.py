@@ -12,7 +12,8 @@ from alula.base.messages import Message, note, refuse, warn
 from alula.flight import Flight
 
 NEEDED = ("V", "phi", "theta", "psi", "v_north", "v_east", "v_down")
-FURTHER = ("alpha", "beta", "beta_flank", "h", "h_gps", "p", "q", "r")
+FURTHER = ("alpha", "beta", "beta_flank", "h", "h_gps", "p", "q", "r", "ax", "ay", "az",
+           "de", "da", "dr")  # fmt: skip
 SHORTEST = 60.0  # s of flight below which nothing is begun
 Point = tuple[float, float, float]
 
@@ -22,8 +23,9 @@ class AirDataRecord:
     """Readings (n,) by channel name at even times t (n,), NaN where there is none; SI.
 
     `V phi theta psi v_north v_east v_down` and any of `alpha`, `beta` or `beta_flank` (a vane
-    reads the flank angle), `h` with `h_gps`, `p q r`. arms: (3,) m from the center of gravity to
-    'V', 'alpha', 'beta', 'gps', body axes; they need the rates.
+    reads the flank angle), `h` with `h_gps`, `p q r`, `ax ay az`,
+    `de da dr` in any unit. arms: (3,) m from the center of
+    gravity to 'V', 'alpha', 'beta', 'gps', 'imu', body axes; they need the rates.
     """
 
     t: Array
@@ -74,7 +76,7 @@ def record_of(
     start: float | None = None,
     end: float | None = None,
     *,
-    rate: float = 10.0,
+    rate: float = 50.0,
     arms: Mapping[str, Point] | None = None,
     slowest: float = 5.0,
 ) -> AirDataRecord:
