@@ -34,7 +34,7 @@ LIMITS = {"1": (0.04, 0.01), "rad": (0.02, 0.002), "m/s": (2.0, 0.3), "s": (0.5,
 FLOOR = {"1": 0.003, "rad": 3.5e-4}
 SPREAD = 0.1  # 1 - |mean direction of flight|: headings over 45 deg to either side
 TIED = 0.7  # correlation from which on a parameter is named
-ITERATIONS, SETTLED = 25, 0.02  # of a standard error
+ITERATIONS, SETTLED = 15, 0.02  # of a standard error
 LONGEST = 2.0  # s, of the autoregressions' memory
 
 
@@ -166,12 +166,14 @@ def calibrate_in_flight(
     *,
     known: Mapping[str, float | None] | None = None,
     without: tuple[str, ...] = (),
+    white: bool = True,
 ) -> InFlightCalibration:
     """Estimate the errors of the air data of a record, wind along.
 
     known: standard deviations of what is known before, SI, by parameter, instead of the defaults
     (vertical wind 0.2 m/s, attitude biases 0.3, 0.3, 1 deg, GPS delay 0.3 s); None: nothing.
-    without: unknowns that are taken as zero. Raises BadInput where the fit does not settle. A
+    without: unknowns that are taken as zero. white: False leaves the residuals coloured: wider
+    intervals, for GPS velocities so poor that what is fast in them is mostly error. Raises BadInput where the fit does not settle. A
     parameter that the flight does not determine reads 'not_identifiable' and has no value.
     """
     record, delay = prepared(record)
@@ -190,7 +192,7 @@ def calibrate_in_flight(
             sizes[name] = size
     prior = np.array([0.0 if sizes[n] is None else 1.0 / float(sizes[n] or 1.0) ** 2
                       for n in model.names])  # fmt: skip
-    values, fit, iterations = _fitted(model, prior)
+    values, fit, iterations = _fitted(model, prior, white)
     white, covariance, dof = _covariance(fit, prior, model.names)
     spread = _spread(model, values)
     residuals = model.residuals(values)
@@ -210,44 +212,60 @@ class _Fit:
     strength: dict[str, float]  # F of the instruments by scale error
 
 
-def _fitted(model: Model, prior: Array) -> tuple[Array, _Fit, int]:
-    values = np.zeros(len(model.names))
+def _fitted(model: Model, prior: Array, white: bool) -> tuple[Array, _Fit, int]:
+    """Plain weights first; then whitened by what they leave, twice.
+
+    Estimated together, a long autoregression would rather foretell the readings by themselves.
+    """
+    values, used = np.zeros(len(model.names)), 0
     largest = round(LONGEST / float(np.median(np.diff(model.record.t))))
-    # Constant and slopes of the residual must not pass for colour: begin with plain weights.
     filters = [np.array([1.0]) for _ in model.outputs]
-    for iteration in range(1, ITERATIONS + 1):
-        residual, slopes = model.residuals(values), model.jacobian(values)
-        if iteration > 2:
-            # Heights are smooth: a long memory would foretell them by themselves.
+    for stage in range(3 if white else 1):
+        if stage:
             filters = [
-                autoregression(r, 3 if name == "h" else largest)
-                for name, r in zip(model.outputs, residual.T, strict=True)
+                autoregression(r, 3 if name == "h" else largest)  # heights are smooth anyway
+                for name, r in zip(model.outputs, model.residuals(values).T, strict=True)
             ]
-        r, x = whitened(residual, filters), whitened(slopes, filters)
-        good = np.isfinite(r) & np.isfinite(x).all(axis=2)
-        r, x = np.where(good, r, 0.0), np.where(good[..., None], x, 0.0)
-        size = np.sqrt(np.sum(r**2, axis=0) / np.maximum(1, np.sum(good, axis=0)))
-        size = np.where(size > 0.0, size, 1.0)
-        r, x = r / size, x / size[:, None]
-        z, strength = _instrumented(model, values, x, good, filters)
-        information = np.einsum("nmi,nmj->ij", z, z) + np.diag(prior)
-        scale = 1.0 / np.sqrt(np.maximum(np.diag(information), 1e-300))
-        # What nothing determines is left where it is: its variance is what tells.
-        inverse = np.linalg.pinv(information * np.outer(scale, scale), rcond=1e-12, hermitian=True)
-        dispersion = inverse * np.outer(scale, scale)
-        step = dispersion @ (np.einsum("nmi,nm->i", z, r) - prior * values)
-        se = np.sqrt(np.maximum(np.diag(dispersion), 1e-300))
-        step *= min(1.0, 20.0 / max(1e-12, float(np.max(np.abs(step)))))  # 20 m/s, rad: far enough
-        values = values + step
-        if iteration > 4 and np.all(np.abs(step) <= SETTLED * se):
-            return values, _Fit(np.where(good, r, np.nan), z, dispersion, strength), iteration
-    raise refuse(
-        "not_settled",
-        where="in-flight calibration",
-        expected=f"a fit that settles in {ITERATIONS} steps",
-        found="last step up to " + f"{float(np.max(np.abs(step) / se)):.2g} standard errors",
-        do="Look at the mapping of signs and units; cut what is not flight.",
-    )
+        fit, size = None, np.inf
+        for _ in range(ITERATIONS):
+            used += 1
+            fit, step = _step(model, values, prior, filters)
+            step *= min(1.0, 20.0 / max(1e-12, float(np.max(np.abs(step)))))  # 20 m/s: far enough
+            values = values + step
+            se = np.sqrt(np.maximum(np.diag(fit.dispersion), 1e-300))
+            size = float(np.max(np.abs(step) / se))
+            if size <= SETTLED:
+                break
+        else:
+            raise refuse(
+                "not_settled",
+                where="in-flight calibration",
+                expected=f"a fit that settles in {ITERATIONS} steps",
+                found=f"a last step of {size:.2g} standard errors",
+                do="Look at the mapping of signs and units; cut what is not flight.",
+            )
+    assert fit is not None
+    return values, fit, used
+
+
+def _step(
+    model: Model, values: Array, prior: Array, filters: list[Array]
+) -> tuple[_Fit, Array]:
+    """One step of Gauss and Newton."""
+    r, x = whitened(model.residuals(values), filters), whitened(model.jacobian(values), filters)
+    good = np.isfinite(r) & np.isfinite(x).all(axis=2)
+    r, x = np.where(good, r, 0.0), np.where(good[..., None], x, 0.0)
+    size = np.sqrt(np.sum(r**2, axis=0) / np.maximum(1, np.sum(good, axis=0)))
+    size = np.where(size > 0.0, size, 1.0)
+    r, x = r / size, x / size[:, None]
+    z, strength = _instrumented(model, values, x, good, filters)
+    information = np.einsum("nmi,nmj->ij", z, z) + np.diag(prior)
+    scale = 1.0 / np.sqrt(np.maximum(np.diag(information), 1e-300))
+    # What nothing determines is left where it is: its variance is what tells.
+    inverse = np.linalg.pinv(information * np.outer(scale, scale), rcond=1e-12, hermitian=True)
+    dispersion = inverse * np.outer(scale, scale)
+    step = dispersion @ (np.einsum("nmi,nm->i", z, r) - prior * values)
+    return _Fit(np.where(good, r, np.nan), z, dispersion, strength), np.asarray(step)
 
 
 def _instrumented(
@@ -295,10 +313,10 @@ def _covariance(
 
 def _spread(model: Model, values: Array) -> float:
     """1 - length of the mean direction of flight through the air, level part."""
-    v = model.velocity(dict(zip(model.names, values, strict=True)))
-    r = model.record.readings
-    level = np.column_stack([np.cos(r["psi"]), np.sin(r["psi"])])
-    level = level[np.isfinite(v).all(axis=1)]
+    p, r = dict(zip(model.names, values, strict=True)), model.record.readings
+    level = np.column_stack([r[f"v_{n}"] - p[f"wind_{n}"] for n in ("north", "east")])
+    level = level / np.maximum(np.linalg.norm(level, axis=1, keepdims=True), 1e-9)
+    level = level[np.isfinite(level).all(axis=1) & np.isfinite(r["V"])]
     return float(1.0 - np.linalg.norm(np.mean(level, axis=0)))
 
 

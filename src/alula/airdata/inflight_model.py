@@ -59,7 +59,7 @@ class Model:
         for name in self.outputs:
             if name == "h":
                 gps = readings["h_gps"]
-                speed2 = readings["V"] ** 2
+                speed2 = np.sum(v**2, axis=1)
                 foretold = gps + p["h_offset"] + p["h_scale"] * (gps - np.nanmean(gps))
                 foretold = foretold - p["static_error"] * speed2 / (2.0 * G)
             else:
@@ -139,9 +139,8 @@ def _read(name: str, v: Array, p: dict[str, float]) -> Array:
 
 
 def _shifted(t: Array, values: Array, delay: float) -> Array:
-    """What a sensor that is `delay` s late will say of now."""
-    at = np.clip(t + delay, t[0], t[-1])
-    return np.column_stack([np.interp(at, t, column) for column in values.T])
+    """What a sensor that is `delay` s late will say of now: by its slope, smooth in the delay."""
+    return values + delay * np.gradient(values, t, axis=0)
 
 
 def autoregression(residual: Array, largest: int) -> Array:
