@@ -2,6 +2,7 @@
 #include <chrono>
 
 #include "alula/airdata/conversions.hpp"
+#include "alula/airdata/monitor.hpp"
 #include "alula/airdata/probe_table.hpp"
 #include "alula/airdata/static_port.hpp"
 #include "alula/airdata/vane.hpp"
@@ -261,11 +262,59 @@ void bind_vanes(nb::module_& m) {
       "Returns how many were refused; those are NaN.");
 }
 
+void bind_monitor(nb::module_& m) {
+  m.def(
+      "monitor",
+      [](Matrix sources, Vector settings, Vector t, Matrix readings, MatrixOut out,
+         nb::ndarray<int, nb::ndim<2>, nb::c_contig, nb::device::cpu> health, StatusOut named) {
+        if (sources.shape(1) != 3 || settings.shape(0) != 7)
+          throw nb::value_error("sources: expected (m, 3); settings: expected 7 numbers");
+        air::MonitorSettings<double> s;
+        for (std::size_t i = 0; i < sources.shape(0); ++i)
+          if (!s.sources.push({sources(i, 0), sources(i, 1), static_cast<int>(sources(i, 2))}))
+            throw nb::value_error("at most 8 sources");
+        s.mean_time = settings(0);
+        s.bias_limit = settings(1);
+        s.noise_limit = settings(2);
+        s.dead_after = settings(3);
+        s.readmit = settings(4);
+        s.gate = settings(5);
+        s.longest_step = settings(6);
+        const std::size_t m = sources.shape(0);
+        if (readings.shape(0) != t.shape(0) || readings.shape(1) != m ||
+            health.shape(0) != t.shape(0) || health.shape(1) != m ||
+            out.shape(0) != t.shape(0) || out.shape(1) != 4)
+          throw nb::value_error("expected readings and health (n, m), out (n, 4)");
+        air::MonitorState<double> state;
+        double now[air::kMostSources];
+        bool fresh[air::kMostSources];
+        for (std::size_t k = 0; k < t.shape(0); ++k) {
+          for (std::size_t i = 0; i < m; ++i) {
+            now[i] = readings(k, i);
+            fresh[i] = !std::isnan(now[i]);
+          }
+          const auto voted = air::monitor_step(s, state, t(k), now, fresh);
+          out(k, 0) = voted.angle;
+          out(k, 1) = voted.sigma;
+          out(k, 2) = voted.used;
+          out(k, 3) = voted.split;
+          named(k) = voted.named;
+          for (std::size_t i = 0; i < m; ++i) health(k, i) = state.source[i].health;
+        }
+        return state.refused;
+      },
+      nb::arg("sources"), nb::arg("settings"), nb::arg("t"), nb::arg("readings"), nb::arg("out"),
+      nb::arg("health"), nb::arg("named"),
+      "Vote over readings (n, m), NaN where there is none: angle, sigma, used, split (n, 4).\n"
+      "sources: white, slow, stuck_after. Returns how many steps were refused.");
+}
+
 }  // namespace
 
 void bind_airdata(nb::module_& m) {
   bind_conversions(m);
   bind_vanes(m);
+  bind_monitor(m);
   nb::class_<Probe>(m, "Probe", "Five-hole probe: see alula/airdata/probe.hpp.")
       .def(nb::init<Vector, double, Vector, double, double, double, double, double>(),
            nb::arg("side"), nb::arg("side_sine"), nb::arg("center"), nb::arg("center_sine"),
