@@ -41,7 +41,7 @@ struct Health {
 
 template <class S>
 struct SourceState {
-  S value{}, off{}, mean{}, power{}, weight{}, age{}, good{};
+  S value{}, off{}, mean{}, power{}, weight{}, count{}, age{}, good{};
   int same = 0, rejected = 0;
   bool seen = false;
   Health::Value health = Health::healthy;
@@ -144,11 +144,12 @@ Voted<S> monitor_step(const MonitorSettings<S>& s, MonitorState<S>& state, S t, 
   state.t = t;
   state.started = true;
   bool valid[kMostSources] = {};
+  S since[kMostSources] = {};
   for (int i = 0; i < s.sources.size(); ++i) {
     SourceState<S>& one = state.source[i];
     one.age += dt;
     if (anew) {
-      one.weight = S(0);
+      one.weight = one.count = S(0);
       one.good = S(0);
       one.age = std::fmin(one.age, S(0.5) * s.dead_after);  // nobody had a chance to speak
     }
@@ -164,6 +165,7 @@ Voted<S> monitor_step(const MonitorSettings<S>& s, MonitorState<S>& state, S t, 
       ++one.same;
     one.value = readings[i];
     one.seen = true;
+    since[i] = one.age;
     one.age = S(0);
   }
 
@@ -190,23 +192,26 @@ Voted<S> monitor_step(const MonitorSettings<S>& s, MonitorState<S>& state, S t, 
       const auto others = detail::consensus(s, state, i);
       if (others.count > 0) {
         const S off = one.value - others.value;
-        // Means of the readings so far, until there are enough for an exponential one.
-        const S keep = s.mean_time / (s.mean_time + (dt > S(0) ? dt : S(1e-3)));
+        // Means of the readings so far, until there are enough for an exponential one. Noise needs
+        // more of them than a mean: a slow source takes its time.
+        const S interval = since[i] > S(1e-3) ? since[i] : S(1e-3);
+        const S keep = s.mean_time / (s.mean_time + interval);
+        const S most_count = std::fmax(S(1) / (S(1) - keep), S(20));
         one.weight = keep * one.weight + S(1);
+        one.count = std::fmin(one.count + S(1), most_count);
         const S gain = S(1) / one.weight;
         const S white = spec.white * spec.white + others.white;
         // Noise by what neighbors differ: motion and bias cancel, and one jump is no noise.
         const S step = off - one.off, most_power = S(4) * s.noise_limit * white;
         const S power = std::fmin(S(0.5) * step * step, most_power);
         one.mean = one.weight == S(1) ? off : one.mean + gain * (off - one.mean);
-        one.power = one.weight == S(1) ? S(0) : one.power + gain * (power - one.power);
+        one.power = one.weight == S(1) ? S(0) : one.power + (power - one.power) / one.count;
         one.off = off;
         // The mean's own variance: gain/(2 - gain) once it has settled.
         const S limit =
             s.bias_limit * std::sqrt(spec.slow * spec.slow + others.slow + white * gain);
         const S bias = std::abs(one.mean) / limit, noise = one.power / (s.noise_limit * white);
-        // A few readings make no statistics.
-        const bool enough = one.weight > S(0.6) / (S(1) - keep);
+        const bool enough = one.count > S(0.5) * most_count;
         bad = bad || bias > S(0.7) || (enough && noise > S(0.7));
         if (others.count >= 2) {
           if (enough && noise > S(1) && noise > bias * bias) accuse(i, noise, Health::noisy);
@@ -228,7 +233,7 @@ Voted<S> monitor_step(const MonitorSettings<S>& s, MonitorState<S>& state, S t, 
     state.source[worst].good = S(0);
     // What the others held against a mean with the bad one in it is not theirs.
     for (int i = 0; i < s.sources.size(); ++i)
-      if (i != worst) state.source[i].weight = S(0);
+      if (i != worst) state.source[i].weight = state.source[i].count = S(0);
   }
   Voted<S> out = vote();
   out.named = worst;
