@@ -30,3 +30,6 @@ void bind_simulate(nb::module_& m);
 void bind_aircraft(nb::module_& m);
 void bind_recursive(nb::module_& m);
 void bind_output_error(nb::module_& m);
+void bind_vortex_lattice(nb::module_& m);
+void bind_propellers(nb::module_& m);
+void bind_strip(nb::module_& m);

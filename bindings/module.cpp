@@ -13,4 +13,7 @@ NB_MODULE(ALULA_MODULE, m) {
   bind_simulate(m);
   bind_recursive(m);
   bind_output_error(m);
+  bind_vortex_lattice(m);
+  bind_propellers(m);
+  bind_strip(m);
 }

@@ -16,8 +16,9 @@ from alula.base.project import Project
 from alula.base.provenance import provenance
 from alula.campaign.check import Checked, Progress, check_project
 from alula.campaign.hold_out import with_held_out
+from alula.campaign.identify_task import IdentifyTask, Measured
 from alula.campaign.measured import engines_of, measured_maneuvers
-from alula.campaign.methods import IDENTIFIERS, IdentifyTask, Measured, identify_by, method_name
+from alula.campaign.methods import IDENTIFIERS, identify_by, method_name
 from alula.flight import Flight, Maneuver
 from alula.identify import (
     CoefficientData,

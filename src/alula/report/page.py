@@ -12,7 +12,6 @@ from alula.report.html import Html, css_string, join, tag
 from alula.report.input import ReportInput
 from alula.report.sections.coefficients import coefficients
 from alula.report.sections.correlation import correlation
-from alula.report.sections.geometry import geometry, identified_neutral_point
 from alula.report.sections.histories import histories
 from alula.report.sections.log_card import log_cards
 from alula.report.sections.maneuvers import maneuvers
@@ -110,6 +109,8 @@ def _sections(report: ReportInput, figures: FigureStore) -> list[tuple[str, str,
             found.append(("repeated", "Identified again", repeated(report.reidentified)))
         found.append(("correlation", "Correlation", correlation(report.identification)))
     if report.shape is not None and report.shape.geometry is not None:
+        from alula.report.sections.geometry import geometry, identified_neutral_point  # slow to load
+
         neutral = identified_neutral_point(report.shape, report.identification)
         found.append(("geometry", "Geometry", geometry(report.shape, neutral)))
     found.append(("messages", "Messages", messages(report)))

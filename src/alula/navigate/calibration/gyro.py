@@ -128,6 +128,14 @@ def _check(turns: Turns, where: str) -> None:
             found=str(turned),
             do="Turn by a known angle (180 deg between two stops) about further axes.",
         )
+    if not np.all(np.linalg.norm(turns.rate[turns.angle > 0.0], axis=1) > 0.0):
+        raise refuse(
+            "dead_sensor",
+            where=where,
+            expected="a rate in every turn",
+            found="turns in which the gyro read nothing",
+            do="Check the columns, the windows and the sensor.",
+        )
     if np.any(turns.time <= 0.0):
         raise refuse(
             "bad_window",

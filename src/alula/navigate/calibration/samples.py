@@ -8,9 +8,11 @@ from numpy.typing import NDArray
 from alula.base.arrays import Array
 from alula.base.messages import Message, refuse, warn
 
+HUGE = 1e9  # no reading in SI is larger; NaN and infinity are none either
 MOST_LOST = 0.5  # of all samples: beyond, the recording is no recording
 LEVELS = 50  # distinct readings, below which a channel is too coarse to be judged
 SHARED = 5  # samples at the same extreme reading
+REST = 0.25  # of the span, within which of the median an extreme is the reading at rest
 OVER = 3.0  # times as many there as at the reading next to it: noise never does that
 
 
@@ -20,7 +22,10 @@ def at_limit(readings: Array) -> NDArray[np.bool_]:
     levels, count = np.unique(readings[np.isfinite(readings)], return_counts=True)
     if len(levels) < LEVELS:
         return stuck
+    middle, span = float(np.nanmedian(readings)), float(levels[-1] - levels[0])
     for end, beside in ((0, 1), (-1, -2)):
+        if abs(levels[end] - middle) < REST * span:
+            continue  # turned one way only, the sensor rests at its least reading
         if count[end] >= SHARED and count[end] > OVER * count[beside]:
             stuck |= readings == levels[end]
     return stuck
@@ -32,9 +37,9 @@ def usable(
     """(n,) which vectors (n, 3) are numbers inside of the range, and what there is to say.
 
     limit: magnitude at which the sensor's range ends; found from the readings if None. Raises
-    BadInput if fewer than half of the vectors are usable.
+    BadInput if fewer than half of the vectors are usable, or all are the same.
     """
-    finite = np.asarray(np.isfinite(vectors).all(axis=1))
+    finite = np.asarray((np.abs(vectors) < HUGE).all(axis=1))
     if limit is not None:
         ends = np.abs(vectors) >= limit
     else:
@@ -60,5 +65,13 @@ def usable(
             found=f"{len(good)} vectors, {int((~finite).sum())} not finite, "
             f"{int(stuck.sum())} at the end of the range",
             do="Record anew, with a larger range if the sensor was at its end.",
+        )
+    if np.ptp(vectors[good], axis=0).max() == 0.0:
+        raise refuse(
+            "dead_sensor",
+            where=where,
+            expected="readings that differ from position to position",
+            found=f"{int(good.sum())} times the same",
+            do="Check the columns and the sensor.",
         )
     return good, said
