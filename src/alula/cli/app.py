@@ -10,6 +10,7 @@ import typer
 
 from alula.base.messages import refuse
 from alula.cli.calibrate import calibrate
+from alula.cli.airdata import airdata
 from alula.cli.check import check
 from alula.cli.compare import compare
 from alula.cli.contract import Command
