@@ -282,8 +282,8 @@ void bind_monitor(nb::module_& m) {
         s.longest_step = settings(6);
         const std::size_t m = sources.shape(0);
         if (readings.shape(0) != t.shape(0) || readings.shape(1) != m ||
-            health.shape(0) != t.shape(0) || health.shape(1) != m ||
-            out.shape(0) != t.shape(0) || out.shape(1) != 4)
+            health.shape(0) != t.shape(0) || health.shape(1) != m || out.shape(0) != t.shape(0) ||
+            out.shape(1) != 4)
           throw nb::value_error("expected readings and health (n, m), out (n, 4)");
         air::MonitorState<double> state;
         double now[air::kMostSources];

@@ -14,8 +14,9 @@ import h5py
 import numpy as np
 from scipy.io import loadmat
 
-from alula.airdata.inflight import InFlightCalibration, calibrate_in_flight
+from alula.airdata.inflight import calibrate_in_flight
 from alula.airdata.inflight_record import AirDataRecord
+from alula.airdata.inflight_result import InFlightCalibration
 from alula.base.arrays import Array
 from alula.base.local_cubic import LocalCubic
 from alula.simulate import flow_angles

@@ -54,10 +54,11 @@ def check(quick: bool = False) -> tuple[str, bool]:
     off = np.max(np.abs(fit.cp - (2.4 * np.cos(fit.theta) ** 2 - 1.4)))
     inside = np.abs(np.linspace(-35.0, 35.0, 29)) < 10.1
     near = alpha[np.ix_(inside, inside)]
+    largest = [float(np.degrees(np.nanmax(np.abs(x)))) for x in (near, alpha, beta)]
     words.append(
-        f"the printed c_p, off by up to {off:.2f}, cancels in part: it errs by {np.degrees(np.nanmax(np.abs(near))):.2f}° in alpha within "
-        f"10°, {np.degrees(np.nanmax(np.abs(alpha))):.1f}° within 35° "
-        f"(beta {np.degrees(np.nanmax(np.abs(beta))):.1f}°, q {100 * np.nanmax(np.abs(q)):.0f} %)"
+        f"the printed c_p, off by up to {off:.2f}, cancels in part: it errs by {largest[0]:.2f}° "
+        f"in alpha within 10°, {largest[1]:.1f}° within 35° (beta {largest[2]:.1f}°, "
+        f"q {100 * np.nanmax(np.abs(q)):.0f} %)"
     )
     table = probe_table(made["sine"])
     worst = np.degrees(max(table.error_alpha, table.error_beta))

@@ -16,8 +16,9 @@ import numpy as np
 from scipy import stats
 
 from alula.aircraft import load_aircraft
-from alula.airdata.inflight import SOUGHT, InFlightCalibration, calibrate_in_flight
+from alula.airdata.inflight import calibrate_in_flight
 from alula.airdata.inflight_record import AirDataRecord
+from alula.airdata.inflight_result import SOUGHT, InFlightCalibration
 from alula.base.arrays import Array
 from alula.model import load_model
 from alula.simulate import Turbulence, airframe_of, flow_angles, fly, trim_level, velocity_at
@@ -167,9 +168,15 @@ def check(quick: bool = False) -> tuple[str, bool]:
         + ")"
         for n in names
     )
-    good = told >= LEAST and refused and share >= (0.8 if quick else LEAST) and min(each.values()) >= least
+    good = (
+        told >= LEAST
+        and refused
+        and share >= (0.8 if quick else LEAST)
+        and min(each.values()) >= least
+    )
     return (
         f"{len(seeds)} flights of {SECONDS:g} s in 1 m/s turbulence, truth inside 95 % intervals: "
-        f"{words}; together {share:.1%}; {told:.1%} determined; straight flights refused: {refused}",
+        f"{words}; together {share:.1%}; {told:.1%} determined; "
+        f"straight flights refused: {refused}",
         bool(good),
     )

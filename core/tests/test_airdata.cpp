@@ -222,8 +222,7 @@ TYPED_TEST(Airdata, TableOfTheProbe) {
     for (int j = 0; j < n; ++j)
       for (double x : {-1.2 + 0.15 * i, -1.2 + 0.15 * j, 1.0})
         data.push_back(static_cast<float>(x));
-  ProbeTable<S> table{data.data(), n,      S(1.2),          probe.A,
-                      probe.B,     probe.K, S(1), S(35 * kDeg)};
+  ProbeTable<S> table{data.data(), n, S(1.2), probe.A, probe.B, probe.K, S(1), S(35 * kDeg)};
   for (double a : {-30.0, 0.0, 12.5})
     for (double b : {-20.0, 0.0, 33.0}) {
       ProbeFlow<S> flow;
@@ -288,8 +287,8 @@ TYPED_TEST(Airdata, StaticPort) {
   EXPECT_NEAR(static_pressure_correction(port, S(80), S(1.225)),
               4 * static_pressure_correction(port, S(40), S(1.225)), 1e-2);
   EXPECT_EQ(static_pressure_correction(port, S(-5), S(1.225)), S(0));
-  EXPECT_TRUE(std::isnan(
-      static_pressure_correction(port, std::numeric_limits<S>::quiet_NaN(), S(1.225))));
+  EXPECT_TRUE(
+      std::isnan(static_pressure_correction(port, std::numeric_limits<S>::quiet_NaN(), S(1.225))));
 }
 
 TYPED_TEST(Airdata, AllocatesNothing) {

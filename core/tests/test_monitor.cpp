@@ -81,9 +81,7 @@ TYPED_TEST(Monitor, NamesTheFaultAndCarriesOn) {
     const double worst = run<S>(fault, state, named, after);
     EXPECT_EQ(named, fault == none ? -1 : 2) << fault;
     EXPECT_EQ(state.source[2].health, told[fault]);
-    if (fault != none) {
-      EXPECT_LT(after, 2.0) << fault;
-    }
+    if (fault != none) { EXPECT_LT(after, 2.0) << fault; }
     EXPECT_GE(after, 0.0);
     for (int i : {0, 1, 3}) EXPECT_EQ(state.source[i].health, Health::healthy) << fault << i;
     // Mean of three or four with noise of 0.2 deg: 0.12, over 1000 steps 3.5 times that, and what

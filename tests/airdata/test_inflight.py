@@ -82,9 +82,7 @@ def test_motion_is_smoothed_to_the_truth() -> None:
     flight = flown(2, 100.0)
     smooth, delay = prepared(record(flight, truth_of(2), 2))
     assert delay == pytest.approx(0.15, abs=0.01)
-    off = smooth.readings["v_north"] - np.interp(
-        smooth.t, flight.motion.t, flight.velocity[:, 0]
-    )
+    off = smooth.readings["v_north"] - np.interp(smooth.t, flight.motion.t, flight.velocity[:, 0])
     inside = slice(50, -50)  # at the ends a parabola of 4 s to one side is less well known
     assert np.std(off[inside]) < 0.06
 

@@ -29,7 +29,7 @@ def test_there_and_back() -> None:
     read = vane_readings(a, b, v, rates)
     V = np.linalg.norm(v + np.cross(rates, pitot), axis=1)
     found = flow_from_vanes(a, b, *read, V, rates, pitot)
-    assert found.V == pytest.approx(np.linalg.norm(v, axis=1), rel=1e-12)
+    assert pytest.approx(np.linalg.norm(v, axis=1), rel=1e-12) == found.V
     assert found.alpha == pytest.approx(np.arctan2(v[:, 2], v[:, 0]), abs=1e-12)
     assert found.beta == pytest.approx(np.arcsin(v[:, 1] / found.V), abs=1e-12)
     flank = flank_of_beta(found.beta, found.alpha)

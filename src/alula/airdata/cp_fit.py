@@ -37,9 +37,8 @@ class Cp:
     def __call__(self, theta: ArrayLike) -> Array:
         """c_p at flow angles theta, rad."""
         theta = np.asarray(theta, dtype=np.float64)
-        return np.polynomial.polynomial.polyval(np.cos(theta), self.power) + self.sine * np.sin(
-            2.0 * theta
-        )
+        even = np.polynomial.polynomial.polyval(np.cos(theta), self.power)
+        return np.asarray(even + self.sine * np.sin(2.0 * theta))
 
 
 def harmonic_cp(cosines: ArrayLike, low: float = 0.0, high: float = np.pi / 2) -> Cp:
@@ -88,7 +87,7 @@ class CpFit:
 
     def as_printed(self) -> Cp:
         """The three terms over the port's own flow angle."""
-        _, low, high = self.theta, float(np.min(self.theta)), float(np.max(self.theta))
+        low, high = float(np.min(self.theta)), float(np.max(self.theta))
         a1, a2, a3 = self.a
         return Cp(frozen([a3 - a2, 0.0, 2.0 * a2]), float(a1), low, high)
 

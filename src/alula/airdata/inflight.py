@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from scipy import stats
@@ -20,145 +20,24 @@ from alula.airdata.inflight_instruments import WEAKEST, first_stage, instruments
 from alula.airdata.inflight_model import UNKNOWNS, Model, autoregression, model_of, whitened
 from alula.airdata.inflight_motion import prepared
 from alula.airdata.inflight_record import AirDataRecord
+from alula.airdata.inflight_result import SOUGHT, InFlightCalibration, Parameter, Verdict
 from alula.base.arrays import Array, frozen
 from alula.base.coloured import coloured_covariance
 from alula.base.messages import Message, refuse, warn
 
-Verdict = Literal["ok", "weak", "not_identifiable"]
-SOUGHT = ("k_V", "k_alpha", "b_alpha", "k_beta", "b_beta", "static_error")
-WIND = ("wind_north", "wind_east", "wind_down")
 # Standard error from which on a parameter is not determined; one that is fine for any value.
 LIMITS = {"1": (0.04, 0.01), "rad": (0.02, 0.002), "m/s": (2.0, 0.3), "s": (0.5, 0.02),
           "m": (30.0, 1.0)}  # fmt: skip
 # Standard errors of what sampling and the smoothing of the motion leave (calm air shows them).
 FLOOR = {"1": 0.003, "rad": 3.5e-4}
+# What is not known either where a scale error is not.
+GO_WITH = {"k_V": ("wind_north", "wind_east", "static_error"), "k_alpha": ("b_alpha",),
+           "k_beta": ("b_beta",)}  # fmt: skip
 SPREAD = 0.1  # 1 - |mean direction of flight|: headings over 45 deg to either side
+HELD = 1e8  # information on what is kept at zero
 TIED = 0.7  # correlation from which on a parameter is named
-ITERATIONS, SETTLED = 15, 0.02  # of a standard error
+ITERATIONS, SETTLED, FAR = 20, 0.02, 0.25  # of a standard error; FAR: has not settled at all
 LONGEST = 2.0  # s, of the autoregressions' memory
-
-
-@dataclass(frozen=True)
-class Parameter:
-    """One parameter. value: NaN where the flight does not determine it."""
-
-    name: str
-    value: float
-    se_white: float
-    se: float
-    ci95: tuple[float, float]
-    unit: str
-    verdict: Verdict
-    tied_to: tuple[tuple[str, float], ...] = ()
-
-    def as_dict(self) -> dict[str, Any]:
-        """As the envelope's `result.parameters[]` carries it."""
-        return {
-            "name": self.name, "value": self.value, "se_white": self.se_white, "se": self.se,
-            "ci95": list(self.ci95), "verdict": self.verdict,
-            "tied_to": [{"name": n, "weight": w} for n, w in self.tied_to], "unit": self.unit,
-        }  # fmt: skip
-
-
-@dataclass(frozen=True)
-class InFlightCalibration:
-    """Errors of the air data: reading = (1 + k) truth + b, port pressure = p + static_error q.
-
-    parameters: sought ones, wind, and what was known before (attitude biases, GPS delay), each
-    with interval and verdict. covariance: of them, in their order. spread: 1 - |mean direction|,
-    0 for a straight flight. resid: (n, m) reading less foretold one, by `outputs`. used: samples.
-    gps_delay: s, that was found and removed beforehand; None where it is a parameter.
-    """
-
-    parameters: tuple[Parameter, ...]
-    covariance: Array
-    spread: float
-    t: Array
-    outputs: tuple[str, ...]
-    resid: Array
-    used: int
-    iterations: int
-    gps_delay: float | None = None
-    messages: tuple[Message, ...] = ()
-
-    def __getitem__(self, name: str) -> Parameter:
-        """The parameter of that name; raises BadInput naming those there are."""
-        for p in self.parameters:
-            if p.name == name:
-                return p
-        raise refuse(
-            "unknown_parameter",
-            where="in-flight calibration",
-            expected=", ".join(p.name for p in self.parameters),
-            found=f"'{name}'",
-            do="Name one of these.",
-        )
-
-    @property
-    def rich(self) -> bool:
-        """Whether the flight told airspeed error and wind apart."""
-        return self["k_V"].verdict != "not_identifiable"
-
-    @property
-    def determined(self) -> bool:
-        """Whether every sought parameter is."""
-        return all(
-            p.verdict != "not_identifiable" for p in self.parameters if p.name in (*SOUGHT, *WIND)
-        )
-
-    def corrected(self, readings: Mapping[str, Array]) -> dict[str, Array]:
-        """Readings 'V', 'alpha', 'beta' or 'beta_flank' without their errors.
-
-        Raises BadInput where the flight did not determine what is needed.
-        """
-        out = {}
-        for name, values in readings.items():
-            kind = "beta" if name == "beta_flank" else name
-            scale, bias = (
-                self[n].value if any(p.name == n for p in self.parameters) else 0.0
-                for n in (f"k_{kind}", f"b_{kind}")
-            )
-            if not np.isfinite(scale + bias):
-                raise refuse(
-                    "flight_not_rich",
-                    where=f"in-flight calibration, {name}",
-                    expected="a flight that determines its errors",
-                    found=f"headings spread {self.spread:.2g}; "
-                    f"se {', '.join(f'{p.name} {p.se:.2g}' for p in self.parameters[:5])}",
-                    do="Fly turns, and maneuvers in pitch and yaw.",
-                )
-            out[name] = (np.asarray(values) - bias) / (1.0 + scale)
-        return out
-
-    def as_dict(self) -> dict[str, Any]:
-        """As the envelope carries it."""
-        return {
-            "parameters": [p.as_dict() for p in self.parameters],
-            "rich": self.rich,
-            "heading_spread": self.spread,
-            "samples": self.used,
-            "outputs": list(self.outputs),
-            "resid_rms": {
-                n: float(np.sqrt(np.nanmean(self.resid[:, j] ** 2)))
-                for j, n in enumerate(self.outputs)
-            },
-            "iterations": self.iterations,
-            "gps_delay": self.gps_delay,
-        }
-
-    def summary(self) -> str:
-        """The parameters as text; angles in deg."""
-        lines = [f"{'parameter':<14}{'value':>11}{'se':>10}   95 % interval          verdict"]
-        for p in self.parameters:
-            k, unit = (np.degrees(1.0), "deg") if p.unit == "rad" else (1.0, p.unit)
-            low, high = (k * x for x in p.ci95)
-            lines.append(
-                f"{p.name:<14}{k * p.value:>11.4g}{k * p.se:>10.2g}   {low:>9.4g} to {high:<9.4g}"
-                f"  {p.verdict.replace('_', ' ')}"
-                + (f"  [{unit}]" if unit != "1" else "")
-                + (", tied to " + ", ".join(n for n, _ in p.tied_to) if p.tied_to else "")
-            )
-        return "\n".join(lines)
 
 
 def calibrate_in_flight(
@@ -173,8 +52,9 @@ def calibrate_in_flight(
     known: standard deviations of what is known before, SI, by parameter, instead of the defaults
     (vertical wind 0.2 m/s, attitude biases 0.3, 0.3, 1 deg, GPS delay 0.3 s); None: nothing.
     without: unknowns that are taken as zero. white: False leaves the residuals coloured: wider
-    intervals, for GPS velocities so poor that what is fast in them is mostly error. Raises BadInput where the fit does not settle. A
-    parameter that the flight does not determine reads 'not_identifiable' and has no value.
+    intervals, for GPS velocities so poor that what is fast in them is mostly error. Raises
+    BadInput where the fit does not settle. A parameter that the flight does not determine reads
+    'not_identifiable' and has no value.
     """
     record, delay = prepared(record)
     model = model_of(record, without if delay is None else (*without, "gps_delay"))
@@ -193,11 +73,11 @@ def calibrate_in_flight(
     prior = np.array([0.0 if sizes[n] is None else 1.0 / float(sizes[n] or 1.0) ** 2
                       for n in model.names])  # fmt: skip
     values, fit, iterations = _fitted(model, prior, white)
-    white, covariance, dof = _covariance(fit, prior, model.names)
+    plain, covariance, dof = _covariance(fit, prior, model.names)
     spread = _spread(model, values)
     residuals = model.residuals(values)
     found = InFlightCalibration(
-        _parameters(model.names, values, white, covariance, dof, spread, fit.strength),
+        _parameters(model.names, values, plain, covariance, dof, fit.held),
         frozen(covariance), spread, record.t, model.outputs, frozen(residuals),
         int(np.sum(np.isfinite(fit.residual).any(axis=1))), iterations, delay, record.messages,
     )  # fmt: skip
@@ -206,51 +86,76 @@ def calibrate_in_flight(
 
 @dataclass(frozen=True)
 class _Fit:
+    """A step's equations. held: what the flight cannot tell, kept at zero."""
+
     residual: Array  # (n, m), whitened, unit variance
     slopes: Array  # (n, m, k)
     dispersion: Array  # (k, k)
     strength: dict[str, float]  # F of the instruments by scale error
+    held: frozenset[str] = frozenset()
 
 
 def _fitted(model: Model, prior: Array, white: bool) -> tuple[Array, _Fit, int]:
     """Plain weights first; then whitened by what they leave, twice.
 
-    Estimated together, a long autoregression would rather foretell the readings by themselves.
+    Estimated together, a long autoregression would rather foretell the readings by themselves. On
+    one heading there is nothing to be gained by whitening, and plain weights stay.
     """
-    values, used = np.zeros(len(model.names)), 0
-    largest = round(LONGEST / float(np.median(np.diff(model.record.t))))
+    start = np.zeros(len(model.names))
     filters = [np.array([1.0]) for _ in model.outputs]
-    for stage in range(3 if white else 1):
-        if stage:
-            filters = [
-                autoregression(r, 3 if name == "h" else largest)  # heights are smooth anyway
-                for name, r in zip(model.outputs, model.residuals(values).T, strict=True)
-            ]
-        fit, size = None, np.inf
-        for _ in range(ITERATIONS):
-            used += 1
-            fit, step = _step(model, values, prior, filters)
-            step *= min(1.0, 20.0 / max(1e-12, float(np.max(np.abs(step)))))  # 20 m/s: far enough
-            values = values + step
-            se = np.sqrt(np.maximum(np.diag(fit.dispersion), 1e-300))
-            size = float(np.max(np.abs(step) / se))
-            if size <= SETTLED:
-                break
-        else:
-            raise refuse(
-                "not_settled",
-                where="in-flight calibration",
-                expected=f"a fit that settles in {ITERATIONS} steps",
-                found=f"a last step of {size:.2g} standard errors",
-                do="Look at the mapping of signs and units; cut what is not flight.",
-            )
-    assert fit is not None
+    held = _untold(model, start, _step(model, start, prior, filters)[0].strength)
+    values, fit, used, size = _settled(model, start, prior, filters, held)
+    if size > FAR and "k_V" in held:  # nor do the vanes' scales settle on one heading
+        held = held | {n for n in ("k_alpha", "k_beta") if n in model.names}
+        values, fit, used, size = _settled(model, start, prior, filters, held)
+    largest = round(LONGEST / float(np.median(np.diff(model.record.t))))
+    for _ in range(2 if white and "k_V" not in held else 0):
+        filters = [
+            autoregression(r, 3 if name == "h" else largest)  # heights are smooth anyway
+            for name, r in zip(model.outputs, model.residuals(values).T, strict=True)
+        ]
+        held = _untold(model, values, _step(model, values, prior, filters)[0].strength)
+        values, fit, more, size = _settled(model, values, prior, filters, held)
+        used += more
+    if not size <= FAR:
+        raise refuse(
+            "not_settled",
+            where="in-flight calibration",
+            expected=f"a fit that settles in {ITERATIONS} steps",
+            found=f"a last step of {size:.2g} standard errors",
+            do="Look at the mapping of signs and units; cut what is not flight.",
+        )
     return values, fit, used
 
 
-def _step(
-    model: Model, values: Array, prior: Array, filters: list[Array]
-) -> tuple[_Fit, Array]:
+def _settled(
+    model: Model, values: Array, prior: Array, filters: list[Array], held: frozenset[str]
+) -> tuple[Array, _Fit, int, float]:
+    """Values, equations, number of steps and the last one's size in standard errors."""
+    known = np.where([n in held for n in model.names], HELD, prior)
+    size, share, used = np.inf, 1.0, 0
+    while used < ITERATIONS and size > SETTLED:
+        used += 1
+        fit, step = _step(model, values, known, filters)
+        step *= min(1.0, 20.0 / max(1e-12, float(np.max(np.abs(step)))))  # 20 m/s: far enough
+        values = values + share * step
+        se = np.sqrt(np.maximum(np.diag(fit.dispersion), 1e-300))
+        before, size = size, float(np.max(np.abs(step) / se))
+        if size > 0.7 * before:  # swings about the solution
+            share = max(0.3, 0.7 * share)
+    return values, replace(fit, held=held), used, size
+
+
+def _untold(model: Model, values: Array, strength: Mapping[str, float]) -> frozenset[str]:
+    """Scale errors that this flight cannot tell: on one heading, or without the pilot's doing.
+
+    Left in, they would wander along what they are tied to and never settle.
+    """
+    straight = {"k_V"} if _spread(model, values) < SPREAD else set()
+    return frozenset(straight | {n for n, f in strength.items() if not f > WEAKEST})
+
+
+def _step(model: Model, values: Array, prior: Array, filters: list[Array]) -> tuple[_Fit, Array]:
     """One step of Gauss and Newton."""
     r, x = whitened(model.residuals(values), filters), whitened(model.jacobian(values), filters)
     good = np.isfinite(r) & np.isfinite(x).all(axis=2)
@@ -291,9 +196,7 @@ def _instrumented(
     return out, strength
 
 
-def _covariance(
-    fit: _Fit, prior: Array, names: tuple[str, ...]
-) -> tuple[Array, Array, Array]:
+def _covariance(fit: _Fit, prior: Array, names: tuple[str, ...]) -> tuple[Array, Array, Array]:
     """Plain and coloured covariance (k, k) and degrees of freedom (k,)."""
     D, known = fit.dispersion, np.isfinite(fit.residual)
     r = np.where(known, fit.residual, 0.0)
@@ -326,33 +229,32 @@ def _parameters(
     white: Array,
     covariance: Array,
     dof: Array,
-    spread: float,
-    strength: Mapping[str, float],
+    held: frozenset[str],
 ) -> tuple[Parameter, ...]:
     se = np.sqrt(np.maximum(np.diag(covariance), 0.0))
     plain = np.sqrt(np.maximum(np.diag(white), 0.0))
-    straight = spread < SPREAD
     out = []
     for k, name in enumerate(names):
         unit, _ = UNKNOWNS[name]
         lost, fine = LIMITS[unit]
-        value, verdict = float(values[k]), "weak"
+        value = float(values[k])
+        verdict: Verdict = "weak"
         tied: list[tuple[str, float]] = []
         half = float(stats.t.ppf(0.975, dof[k])) * float(se[k])
-        # On one heading a wind along the flight does what an airspeed error does.
-        apart = name not in ("k_V", "wind_north", "wind_east") or not straight
-        apart &= strength.get(name, np.inf) > WEAKEST
-        if not (se[k] <= lost and apart):
+        with_it = [n for n in held if n == name or name in GO_WITH[n]]
+        if with_it:  # known only if what is held were known
+            se[k] = plain[k] = np.inf
             verdict = "not_identifiable"
-            with np.errstate(all="ignore"):
-                row = covariance[k] / (se[k] * se)
+            tied = [(n, 1.0) for n in (*with_it, *(GO_WITH[name] if name in held else ()))
+                    if n != name and n in names]  # fmt: skip
+        elif not se[k] <= lost:
+            verdict = "not_identifiable"
+            finite = np.isfinite(se) & (se > 0.0)
             tied = [
-                (n, float(c))
-                for n, c in zip(names, row, strict=True)
-                if n != name and abs(c) > TIED
+                (n, float(covariance[k, i] / (se[k] * se[i])))
+                for i, n in enumerate(names)
+                if i != k and finite[i] and abs(covariance[k, i]) > TIED * se[k] * se[i]
             ]
-            if not apart and not tied and name in ("k_V", *WIND):
-                tied = [(n, 1.0) for n in ("k_V", *WIND[:2]) if n != name]
         elif abs(value) > 2.0 * se[k] or se[k] < fine:
             verdict = "ok"
         if verdict == "not_identifiable":
@@ -362,7 +264,7 @@ def _parameters(
         out.append(
             Parameter(
                 name, value, float(plain[k]), float(se[k]), interval, unit,
-                verdict, tuple(tied),  # type: ignore[arg-type]
+                verdict, tuple(tied),
             )
         )  # fmt: skip
     return tuple(out)

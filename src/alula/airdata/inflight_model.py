@@ -78,8 +78,8 @@ class Model:
         if p.get("gps_delay", 0.0) != 0.0:
             ground = _shifted(t, ground, p["gps_delay"])
         wind = np.array([p["wind_north"], p["wind_east"], p["wind_down"]])
-        angles = [readings[n] - p.get(f"b_{n}", 0.0) for n in ("phi", "theta", "psi")]
-        v = rotated(*angles, ground - wind)
+        phi, theta, psi = (readings[n] - p.get(f"b_{n}", 0.0) for n in ("phi", "theta", "psi"))
+        v = rotated(phi, theta, psi, ground - wind)
         if "gps" in self.record.arms:
             v = v - np.cross(self.record.rates, np.asarray(self.record.arms["gps"]))
         return v

@@ -67,8 +67,9 @@ def prepared(record: AirDataRecord) -> tuple[AirDataRecord, float | None]:
         if np.isfinite(height).all():
             raw["h_gps"] = np.where(
                 np.isfinite(raw["h_gps"]),
-                _blended(np.interp(record.t + (delay or 0.0), record.t, height),
-                         -full["v_down"], dt),
+                _blended(
+                    np.interp(record.t + (delay or 0.0), record.t, height), -full["v_down"], dt
+                ),
                 np.nan,
             )
     for name in (*ATTITUDE, *GROUND):
@@ -115,7 +116,7 @@ def _euler_rates(full: dict[str, Array], rates: Array) -> tuple[Array, Array, Ar
 
 
 def _blended(slow: Array, slope: Array, dt: float) -> Array:
-    fast = cumulative_trapezoid(slope, dx=dt, initial=0.0)
+    fast = cumulative_trapezoid(slope, dx=dt, initial=0)
     return np.asarray(fast + _smooth(slow - fast, dt, DRIFT))
 
 
@@ -126,7 +127,7 @@ def _smooth(x: Array, dt: float, window: float) -> Array:
 
 def _delay(v: Array, a: Array, t: Array, dt: float) -> float:
     """How late v (n, 3) comes behind the integral of a (n, 3), s: least squares on what is fast."""
-    fast = cumulative_trapezoid(a, dx=dt, axis=0, initial=0.0)
+    fast = cumulative_trapezoid(a, dx=dt, axis=0, initial=0)
     total = 0.0
     for _ in range(4):
         late = np.column_stack([np.interp(t + total, t, x) for x in v.T])

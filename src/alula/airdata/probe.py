@@ -104,9 +104,9 @@ class FiveHoleProbe:
         p = _rows(pressures)
         out, status = np.empty((len(p), 4)), np.empty(len(p), dtype=np.int32)
         self._core.inverse(p, out, status, single)
-        return ProbeFlow(
-            *(frozen(out[:, k]) for k in range(4)), status, counted(status, "five-hole probe")
-        )
+        q, alpha, beta, iterations = (frozen(column) for column in out.T)
+        messages = counted(status, "five-hole probe")
+        return ProbeFlow(q, alpha, beta, iterations, status, messages)
 
     def errors(self, q: ArrayLike, alpha: ArrayLike, beta: ArrayLike, sigma: ArrayLike) -> Array:
         """Standard deviations (n, 3) of alpha, beta (rad) and q (Pa).

@@ -47,7 +47,7 @@ class ProbeTable:
         """C++ header with the table, for alula::airdata::probe_lookup."""
         n = len(self.data)
         A, B, K = self.probe.start()
-        numbers = [f"{_float(x)}," for x in self.data.ravel()]
+        numbers = [f"{_float(float(x))}," for x in self.data.ravel()]
         rows = ["    " + " ".join(numbers[k : k + 6]) for k in range(0, len(numbers), 6)]
         return "\n".join(
             [
@@ -124,17 +124,14 @@ def _lookup(
     core.probe_lookup(
         data, half, np.array(probe.start()), probe.least, margin * probe.domain, p, out, status
     )
-    return ProbeFlow(
-        *(frozen(out[:, k]) for k in range(3)),
-        np.zeros(len(p)),
-        status,
-        counted(status, "five-hole probe, by table"),
-    )
+    q, alpha, beta = (frozen(column) for column in out.T)
+    messages = counted(status, "five-hole probe, by table")
+    return ProbeFlow(q, alpha, beta, np.zeros(len(p)), status, messages)
 
 
 def _float(value: float) -> str:
     """A float literal that reads back the same."""
     text = f"{np.float32(value):.9g}"
     if text in ("nan", "-nan"):
-        return "__builtin_nanf(\"\")"
+        return '__builtin_nanf("")'
     return text + ("f" if any(c in text for c in ".e") else ".0f")

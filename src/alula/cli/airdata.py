@@ -29,9 +29,7 @@ def airdata(
         float | None, typer.Option(metavar="S", help="Time of the log to begin at.")
     ] = None,
     end: Annotated[float | None, typer.Option(metavar="S", help="Time to end at.")] = None,
-    report: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write a page, HTML.")
-    ] = None,
+    report: Annotated[Path | None, typer.Option(metavar="FILE", help="Write a page, HTML.")] = None,
     json: JsonOption = "",
     seed: SeedOption = None,
     threads: ThreadsOption = 1,

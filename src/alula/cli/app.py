@@ -9,8 +9,8 @@ from typing import NoReturn
 import typer
 
 from alula.base.messages import refuse
-from alula.cli.calibrate import calibrate
 from alula.cli.airdata import airdata
+from alula.cli.calibrate import calibrate
 from alula.cli.check import check
 from alula.cli.compare import compare
 from alula.cli.contract import Command
@@ -38,6 +38,7 @@ COMMANDS = (
     new,
     check,
     calibrate,
+    airdata,
     identify,
     compare,
     predict,

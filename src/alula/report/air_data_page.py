@@ -9,7 +9,7 @@ from importlib.resources import files
 
 import numpy as np
 
-from alula.airdata.inflight import InFlightCalibration, Parameter
+from alula.airdata.inflight_result import InFlightCalibration, Parameter
 from alula.report.html import Html, join, table, tag
 from alula.report.numbers import MISSING, interval, number, plus_minus
 from alula.report.pictures import interval_picture, mark

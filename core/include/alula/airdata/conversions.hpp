@@ -69,8 +69,7 @@ S speed_of_sound(S temperature) {
 template <class S>
 S density(S pressure, S temperature) {
   const bool is = pressure > S(0) && temperature > S(0);
-  return is ? pressure / (S(standard_atmosphere_1976::kGasConstant) * temperature)
-            : undefined<S>();
+  return is ? pressure / (S(standard_atmosphere_1976::kGasConstant) * temperature) : undefined<S>();
 }
 
 // True airspeed, m/s, of a calibrated one at a static pressure, Pa, and temperature, K, and back.

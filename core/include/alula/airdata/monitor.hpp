@@ -3,10 +3,10 @@
 //
 // Each source is compared with the weighted mean of those of the others that agree with their own
 // weighted median. Its difference from it is watched in two ways: a short mean tells a bias, what
-// neighboring differences differ by tells noise. Repeated readings tell a stuck sensor, absent ones a dead
-// one. Only the worst source is taken out at a time, so that one that is wrong does not drag the
-// others along; what is left carries on. Two sources that disagree cannot be told apart: that is
-// reported as a split vote and nobody is named.
+// neighboring differences differ by tells noise. Repeated readings tell a stuck sensor, absent ones
+// a dead one. Only the worst source is taken out at a time, so that one that is wrong does not drag
+// the others along; what is left carries on. Two sources that disagree cannot be told apart: that
+// is reported as a split vote and nobody is named.
 #include <cmath>
 #include <limits>
 
@@ -18,21 +18,21 @@ inline constexpr int kMostSources = 8;
 
 template <class S>
 struct SourceSpec {
-  S white{};           // rad, standard deviation of the noise of one reading
-  S slow{};            // rad, of errors that last: bias left, drift, model error
-  int stuck_after{};   // equal readings in a row that a live source does not give; 0: not watched
+  S white{};          // rad, standard deviation of the noise of one reading
+  S slow{};           // rad, of errors that last: bias left, drift, model error
+  int stuck_after{};  // equal readings in a row that a live source does not give; 0: not watched
 };
 
 template <class S>
 struct MonitorSettings {
   Bounded<SourceSpec<S>, kMostSources> sources;
-  S mean_time{S(0.4)};    // s, of the short mean
-  S bias_limit{S(5)};     // standard deviations of the short mean
-  S noise_limit{S(4)};    // times the power that is expected
-  S dead_after{S(0.5)};   // s without a reading
-  S readmit{};            // s of good behavior after which a source is back; 0: never
-  S gate{S(4)};           // standard deviations from the median to have a vote
-  S longest_step{S(1)};   // s, a longer gap starts the means anew
+  S mean_time{S(0.4)};   // s, of the short mean
+  S bias_limit{S(5)};    // standard deviations of the short mean
+  S noise_limit{S(4)};   // times the power that is expected
+  S dead_after{S(0.5)};  // s without a reading
+  S readmit{};           // s of good behavior after which a source is back; 0: never
+  S gate{S(4)};          // standard deviations from the median to have a vote
+  S longest_step{S(1)};  // s, a longer gap starts the means anew
 };
 
 struct Health {

@@ -61,14 +61,14 @@ constexpr HarmonicCp<S> three_terms(S a1, S a2, S a3) {
 
 template <class S, class Side = HarmonicCp<S>, class Center = Side>
 struct Probe {
-  Side side;                       // c_p of ports 1 to 4
-  Center center;                   // c_p of port 0
-  S port_angle{};                  // rad
-  S widest{S(1.6)};                // rad, largest theta that the fit of c_p covers
-  S domain{S(0.6981317)};          // rad, largest alpha and beta that are reported
-  S least{S(1)};                   // Pa, below it there is no flow to speak of
-  S cosine{S(1)}, sine{};          // of the port angle
-  S A{S(1)}, B{}, K{S(1)};         // of the start
+  Side side;                // c_p of ports 1 to 4
+  Center center;            // c_p of port 0
+  S port_angle{};           // rad
+  S widest{S(1.6)};         // rad, largest theta that the fit of c_p covers
+  S domain{S(0.6981317)};   // rad, largest alpha and beta that are reported
+  S least{S(1)};            // Pa, below it there is no flow to speak of
+  S cosine{S(1)}, sine{};   // of the port angle
+  S A{S(1)}, B{}, K{S(1)};  // of the start
 };
 
 struct ProbeStatus {
@@ -183,8 +183,7 @@ ProbeStatus::Value probe_flow(const Probe<S, Side, Center>& probe, const ProbePr
                     p.lateral - q * f.value.z};
     const Vec3<S> normal = cross(f.by_y, f.by_z);
     const S determinant = dot(normal, f.value);
-    if (!(std::abs(determinant) > std::numeric_limits<S>::min()))
-      return ProbeStatus::not_converged;
+    if (!(std::abs(determinant) > std::numeric_limits<S>::min())) return ProbeStatus::not_converged;
     const S inverse = S(1) / determinant;
     S dY = dot(cross(e, f.by_z), f.value) * inverse / q;
     S dZ = dot(cross(f.by_y, e), f.value) * inverse / q;
@@ -238,12 +237,12 @@ struct PressureLimits {
 
 template <class S>
 struct ProbeState {
-  ProbeFlow<S> flow;        // the last valid
-  bool valid = false;       // whether there has been one
-  int age = 0;              // readings since
-  int rejected[8] = {};     // by status
-  S last[3] = {};           // readings
-  int same[3] = {};         // how often each was repeated
+  ProbeFlow<S> flow;     // the last valid
+  bool valid = false;    // whether there has been one
+  int age = 0;           // readings since
+  int rejected[8] = {};  // by status
+  S last[3] = {};        // readings
+  int same[3] = {};      // how often each was repeated
 };
 
 // Takes one reading up. Unless ok, the flow stays as it was and the rejection is counted.

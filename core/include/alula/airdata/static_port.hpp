@@ -9,10 +9,10 @@ namespace alula::airdata {
 // pressure coefficient with Reynolds number.
 template <class S>
 struct StaticPort {
-  S linear{};          // b, Pa s/m
-  S quadratic{};       // c, Pa s2/m2
-  S density{1.225};    // rho_0 of the calibration, kg/m3
-  S fastest{1000};     // m/s, end of the calibration; beyond it the pressure coefficient is held
+  S linear{};        // b, Pa s/m
+  S quadratic{};     // c, Pa s2/m2
+  S density{1.225};  // rho_0 of the calibration, kg/m3
+  S fastest{1000};   // m/s, end of the calibration; beyond it the pressure coefficient is held
 };
 
 // Correction in Pa at forward speed U, m/s, and air density, kg/m3. Flow from behind is outside
