@@ -31,6 +31,7 @@ def test_readme_commands_exist() -> None:
     commands = [line.split() for line in lines if line.startswith("alula ")]
     assert {words[1] for words in commands} == {
         "new", "check", "identify", "modes", "plan", "fly", "validate", "export",
+        "predict", "compare",
     }  # fmt: skip
     for words in commands:
         said = run(["alula", words[1], "--help"], ROOT)
@@ -53,6 +54,27 @@ def test_readme_excerpt_is_what_the_demo_prints(tmp_path: Path) -> None:
         # Half a standard error: the page stays true as long as it tells the same story.
         assert abs(float(words[1]) - float(now[1])) < 0.5 * error
         assert 0.5 < float(now[2]) / error < 2.0
+
+
+def test_readme_prediction_is_what_compare_prints() -> None:
+    """The excerpt's values and ratios, to a unit in the last digit but one."""
+    (shown,) = [b.splitlines() for b in blocks("README.md", "") if b.lstrip().startswith("value")]
+    (command,) = [
+        line.split("#")[0].split()
+        for b in blocks("README.md", "sh")
+        for line in b.splitlines()
+        if line.startswith("alula compare")
+    ]
+    done = run(command, ROOT)
+    assert done.returncode == 0, done.stderr
+    printed = {line[:19].strip(): line[19:].split() for line in done.stdout.splitlines()}
+    for line in shown[1:]:
+        now = printed[line[:19].strip()]
+        for old, new in zip(line[19:].split(), now, strict=True):
+            if old[-1].isdigit():
+                assert float(new) == pytest.approx(float(old), rel=0.01, abs=0.011)
+            else:
+                assert old == new
 
 
 def test_real_projects_named_in_the_readme_load(monkeypatch) -> None:

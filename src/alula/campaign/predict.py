@@ -68,8 +68,8 @@ def run_prediction(
             found=f"'{asked.method}'", do="Choose one of these.",
         )  # fmt: skip
     shape = _shape(plane)
-    flow, said = _flow(plane, asked)
-    said += _without_surface(plane, shape)
+    flow = _flow(plane, asked)
+    said: list[Message] = []
     wing = shape.surface("wing")
     handbook: Derivatives | None = None
     if wing is not None and asked.method in ("combined", "semi", "strip"):
@@ -116,7 +116,7 @@ def _shape(plane: Aircraft) -> Geometry:
     return plane.geometry
 
 
-def _flow(plane: Aircraft, asked: Asked) -> tuple[Flow, list[Message]]:
+def _flow(plane: Aircraft, asked: Asked) -> Flow:
     """The air at h by the standard atmosphere; Mach number of V unless it is given."""
     if not -2000.0 <= asked.h <= 30000.0:
         raise refuse(
@@ -126,14 +126,13 @@ def _flow(plane: Aircraft, asked: Asked) -> tuple[Flow, list[Message]]:
     air = np.empty((1, 4))
     core.standard_atmosphere(np.array([asked.h]), air)
     T, _, density, sound = map(float, air[0])
-    said: list[Message] = []
     speed, range_ = asked.V, plane.envelope.V
     if speed is None:
         speed = V if range_ is None else 0.5 * (range_[0] + range_[1])
     # Sutherland's law, ISO 2533.
     viscosity = 1.458e-6 * T**1.5 / (T + 110.4) / density
     mach = speed / sound if asked.mach is None else asked.mach
-    return Flow(speed, asked.alpha, None, density, viscosity, mach), said
+    return Flow(speed, asked.alpha, None, density, viscosity, mach)
 
 
 def _alpha(asked: Asked, handbook: Derivatives | None) -> float:
@@ -143,21 +142,6 @@ def _alpha(asked: Asked, handbook: Derivatives | None) -> float:
     if handbook is not None:
         return radians(float(handbook.conditions["alpha_deg"]))
     return 0.0
-
-
-def _without_surface(plane: Aircraft, shape: Geometry) -> list[Message]:
-    moved = {name for s in shape.surfaces for c in s.controls for name in c.gains}
-    lacking = [n for n in ("de", "da", "dr", "df") if n in plane.control_signs and n not in moved]
-    return [
-        warn(
-            "control_without_surface",
-            where=f"{plane.path}, controls.{name}",
-            expected=f"a control surface with gains = {{{name} = ...}} in [[geometry.surfaces]]",
-            found="none",
-            do=f"No derivative to {name} is predicted: add the surface.",
-        )
-        for name in lacking
-    ]
 
 
 def _lattice(

@@ -130,7 +130,8 @@ def text_of(found: Prediction, axes: PredictionAxes, per_degree: bool) -> str:
         lines += [f"{n:<22}{_number(e.value, 10)}{e.se:>10.2g}" for n, e in sums.items()]
     if found.neutral_point is not None:
         margin = found.margin
-        words = "" if margin is None else f": {100 * margin:.1f} % of c behind the CG"
+        where = "behind" if margin is None or margin >= 0.0 else "ahead of"
+        words = "" if margin is None else f": {100 * abs(margin):.1f} % of c {where} the CG"
         lines += [
             "",
             f"Neutral point, fixed controls: x {found.neutral_point[0]:.4g} m +- "
@@ -148,7 +149,7 @@ def _table(found: Prediction, shown: Derivatives) -> list[str]:
     lines = [head, "-" * len(head)]
     beside = [_beside(found, k, shown) for k in range(len(parts))]
     for name, e in shown.values.items():
-        share = f"{abs(e.se / e.value):.0%}" if e.value else "-"
+        share = f"{abs(e.se / e.value):.0%}" if abs(e.value) >= e.se > 0.0 else "-"
         line = f"{name:<{wide}}{_number(e.value, 10)}{e.se:>10.2g}{share:>10}"
         if parts:
             line += "".join(f"  {_cell(b.values.get(name)):>20}" for b in beside)

@@ -109,10 +109,10 @@ def _sections(report: ReportInput, figures: FigureStore) -> list[tuple[str, str,
             found.append(("repeated", "Identified again", repeated(report.reidentified)))
         found.append(("correlation", "Correlation", correlation(report.identification)))
     if report.shape is not None and report.shape.geometry is not None:
-        from alula.report.sections.geometry import geometry, identified_neutral_point  # slow to load
+        from alula.report.sections import geometry as shapes  # slow to load
 
-        neutral = identified_neutral_point(report.shape, report.identification)
-        found.append(("geometry", "Geometry", geometry(report.shape, neutral)))
+        neutral = shapes.identified_neutral_point(report.shape, report.identification)
+        found.append(("geometry", "Geometry", shapes.geometry(report.shape, neutral)))
     found.append(("messages", "Messages", messages(report)))
     found.append(("provenance", "Provenance", provenance(report)))
     for k, (key, title, content) in enumerate(found):

@@ -140,7 +140,7 @@ def _share(e: Estimate) -> object:
     if not e.value:
         return MISSING
     share = abs(e.se / e.value)
-    words = percent(share, 2)
+    words = percent(share, 2) if share <= 1.0 else "all of it"
     return mark("caution", words) if share > _MODEST else words
 
 

@@ -71,8 +71,9 @@ def to_point(
     """Moments and rates about another point; body axes, the derivatives taken at alpha.
 
     step: (3,) m, from the new point to the old, its y zero. M_B = M_A + d x F; rotation about B
-    moves A: v_A = v_B + w x d. Where the drag is missing it counts as none. A force's derivative
-    that is missing leaves the moment's out.
+    moves A: v_A = v_B + w x d, by which the flow at A has another angle and another speed. Drag and
+    coefficients at zero that are missing count as none. A missing derivative of the force leaves
+    the moment's out.
     """
     dx, dz = float(step[0]), float(step[2])
     moved: Rows = {}
@@ -95,25 +96,55 @@ def to_point(
             row[key] = row.get(key, 0.0) + weight / length
         moved[name] = row
     out = {n: dict(row) for n, row in moved.items()}
-    along = -(dx * cos(alpha) + dz * sin(alpha)) * 2.0 / reference.c
-    shifts = {"q": ("alpha", along), "r": ("beta", dx * 2.0 / reference.b),
-              "p": ("beta", -dz * 2.0 / reference.b)}  # fmt: skip
     for name in list(out):
         coefficient, label = _parts(name)
-        if coefficient not in COEFFICIENTS or label not in shifts:
-            continue
-        angle, weight = shifts[label]
-        if weight == 0.0:
-            continue
-        other = moved.get(f"{coefficient}_{angle}")
-        if other is None:
-            if coefficient != "CD":
+        if coefficient in COEFFICIENTS and label in ("p", "q", "r"):
+            gained = _rotating(coefficient, label, moved, alpha, dx, dz, reference)
+            if gained is None:
                 del out[name]
                 lost.append(name)
-            continue
-        for key, w in other.items():
-            out[name][key] = out[name].get(key, 0.0) + weight * w
+                continue
+            for key, w in gained.items():
+                out[name][key] = out[name].get(key, 0.0) + w
     return _linear(out, entries), lost
+
+
+def _rotating(
+    coefficient: str,
+    label: str,
+    moved: Rows,
+    alpha: float,
+    dx: float,
+    dz: float,
+    reference: Reference,
+) -> dict[str, float] | None:
+    """What a derivative to a rate gains as the rotation is about the new point; None: not known."""
+    out: dict[str, float] = {}
+
+    def add(name: str, weight: float) -> bool:
+        for key, w in moved.get(name, {}).items():
+            out[key] = out.get(key, 0.0) + weight * w
+        return name in moved or weight == 0.0 or coefficient == "CD"
+
+    if label != "q":
+        arm = dx if label == "r" else -dz
+        return out if add(f"{coefficient}_beta", arm * 2.0 / reference.b) else None
+    angle = -(dx * cos(alpha) + dz * sin(alpha)) * 2.0 / reference.c
+    speed = (dz * cos(alpha) - dx * sin(alpha)) * 2.0 / reference.c
+    if not add(f"{coefficient}_alpha", angle):
+        return None
+
+    def whole(name: str, weight: float) -> None:
+        add(f"{name}_0", weight)
+        add(f"{name}_alpha", weight * alpha)
+
+    whole(coefficient, 2.0 * speed)  # with the square of speed
+    # Lift and drag stay along the new point's stream, the slopes turn with the angle.
+    if coefficient == "CL":
+        whole("CD", angle)
+    if coefficient == "CD":
+        whole("CL", -angle)
+    return out
 
 
 def _pitching(
@@ -141,11 +172,13 @@ def _linear(rows: Rows, entries: Entries) -> dict[str, Entry]:
     for name, row in rows.items():
         own = entries.get(name) or next(iter(entries[n] for n in row))
         value = sum(w * entries[n].value for n, w in row.items())
-        se = [w * entries[n].se for n, w in row.items() if w != 0.0]
         if row == {name: 1.0}:
             out[name] = own
             continue
-        out[name] = Entry(value, hypot(*se) if se else np.nan, own.verdict, own.unit)
+        # What is small beside the entry and states no error adds none.
+        se = [w * entries[n].se for n, w in row.items() if np.isfinite(entries[n].se)]
+        known = bool(se) and bool(np.isfinite(own.se))
+        out[name] = Entry(value, hypot(*se) if known else np.nan, own.verdict, own.unit)
     return out
 
 
