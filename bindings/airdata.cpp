@@ -76,7 +76,12 @@ class Probe {
     fill(single_, side, side_sine, center, center_sine, port_angle, widest, domain, least);
   }
 
-  nb::tuple start() const { return nb::make_tuple(double_.A, double_.B, double_.K); }
+  void start(VectorOut out) const {
+    same_length(out.shape(0), 3);
+    out(0) = double_.A;
+    out(1) = double_.B;
+    out(2) = double_.K;
+  }
 
   void forward(Vector q, Vector alpha, Vector beta, MatrixOut out) const {
     columns(out, q.shape(0), 3);
@@ -319,7 +324,7 @@ void bind_airdata(nb::module_& m) {
       .def(nb::init<Vector, double, Vector, double, double, double, double, double>(),
            nb::arg("side"), nb::arg("side_sine"), nb::arg("center"), nb::arg("center_sine"),
            nb::arg("port_angle"), nb::arg("widest"), nb::arg("domain"), nb::arg("least"))
-      .def("start", &Probe::start, "A, B and K of the inverse's start.")
+      .def("start", &Probe::start, nb::arg("out"), "A, B and K of the inverse's start.")
       .def("forward", &Probe::forward, nb::arg("q"), nb::arg("alpha"), nb::arg("beta"),
            nb::arg("out"), "p0 - static, p1 - p2, p3 - p4 (n, 3).")
       .def("inverse", &Probe::inverse, nb::arg("pressures"), nb::arg("out"), nb::arg("status"),

@@ -177,8 +177,9 @@ class FiveHoleProbe:
 
     def start(self) -> tuple[float, float, float]:
         """A, B and K of the inverse's start (probe.hpp)."""
-        a, b, k = self._core.start()
-        return float(a), float(b), float(k)
+        out = np.empty(3)
+        self._core.start(out)
+        return float(out[0]), float(out[1]), float(out[2])
 
     def starts(self, pressures: Array) -> Array:
         """(n, 3) tangents v/u, w/u and q where the inverse starts."""
