@@ -25,6 +25,7 @@ void bind_linear_filter(nb::module_& m);
 void bind_processor(nb::module_& m);
 void bind_aero(nb::module_& m);
 void bind_atmosphere(nb::module_& m);
+void bind_airdata(nb::module_& m);
 void bind_simulate(nb::module_& m);
 void bind_aircraft(nb::module_& m);
 void bind_recursive(nb::module_& m);

@@ -8,6 +8,7 @@ NB_MODULE(ALULA_MODULE, m) {
   bind_processor(m);
   bind_aero(m);
   bind_atmosphere(m);
+  bind_airdata(m);
   bind_aircraft(m);
   bind_simulate(m);
   bind_recursive(m);

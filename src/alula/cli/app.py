@@ -9,6 +9,7 @@ from typing import NoReturn
 import typer
 
 from alula.base.messages import refuse
+from alula.cli.airdata import airdata
 from alula.cli.calibrate import calibrate
 from alula.cli.check import check
 from alula.cli.compare import compare
@@ -37,6 +38,7 @@ COMMANDS = (
     new,
     check,
     calibrate,
+    airdata,
     identify,
     compare,
     predict,
