@@ -29,3 +29,5 @@ void bind_simulate(nb::module_& m);
 void bind_aircraft(nb::module_& m);
 void bind_recursive(nb::module_& m);
 void bind_output_error(nb::module_& m);
+void bind_navigate(nb::module_& m);
+void bind_navigate_tools(nb::module_& m);

@@ -12,4 +12,6 @@ NB_MODULE(ALULA_MODULE, m) {
   bind_simulate(m);
   bind_recursive(m);
   bind_output_error(m);
+  bind_navigate(m);
+  bind_navigate_tools(m);
 }
