@@ -1,4 +1,6 @@
 // Attitude from two vectors, wind, power train; and how long a step of a filter takes.
+#include <nanobind/stl/string.h>
+
 #include <alula/navigate/joint_updates.hpp>
 #include <alula/navigate/pair.hpp>
 #include <alula/navigate/power_train.hpp>

@@ -28,14 +28,15 @@ void remember(History<T, Size>& h, double t, const Place3<T>& at) {
   if (h.length < Size) ++h.length;
 }
 
-// Where it was at t, between the samples kept and `now`; false where that is forgotten.
+// Where it was at t, between the samples kept and `now` (a little after it: straight on); false
+// where that is forgotten.
 template <class T, int Size>
 bool recall(const History<T, Size>& h, double t, double t_now, const Place3<T>& now,
             Place3<T>& out) {
   double later = t_now;
   Place3<T> after = now;
   if (t >= t_now) {
-    out = now;
+    out = {now.position + static_cast<T>(t - t_now) * now.velocity, now.velocity};
     return true;
   }
   for (int age = 0; age < h.length; ++age) {

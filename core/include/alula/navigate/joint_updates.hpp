@@ -87,13 +87,13 @@ Judged<T> satellite(JointFilter<T>& f, const JointNoise<T>& noise, double t_meas
   if (!std::isfinite(t_measured) || !finite(z) || !finite(sigma))
     return refused(f, Taken::kNotFinite);
   if (!f.started) return refused(f, Taken::kUnusable);
-  if (t_measured > f.t + 1e-3) return refused(f, Taken::kBackwards);
+  if (t_measured > f.t + static_cast<double>(noise.longest_step))
+    return refused(f, Taken::kBackwards);
   Place3<T> then;
   if (!recall(f.history, t_measured, f.t, {f.position, f.velocity}, then))
     return refused(f, Taken::kTooOld);
   const T late = static_cast<T>(f.t - t_measured);
-  Innovation<T, 3, 12> in =
-      of_the_past(f, noise, late > T(0) ? late : T(0), then, position);
+  Innovation<T, 3, 12> in = of_the_past(f, noise, late, then, position);
   const Vec3<T> e = z - (position ? then.position : then.velocity);
   in.e[0] = e.x;
   in.e[1] = e.y;

@@ -145,23 +145,25 @@ Judged<T> take(PositionFilter<T>& f, const PositionNoise<T>& noise, const Innova
 
 // Where the aircraft was when it was measured; kYes where that is known.
 template <class T>
-Taken past(const PositionFilter<T>& f, double t_measured, Place3<T>& then) {
+Taken past(const PositionFilter<T>& f, const PositionNoise<T>& noise, double t_measured,
+           Place3<T>& then) {
   if (!f.started) return Taken::kUnusable;
-  if (t_measured > f.t + 1e-3) return Taken::kBackwards;
+  if (t_measured > f.t + static_cast<double>(noise.longest_step)) return Taken::kBackwards;
   return recall(f.history, t_measured, f.t, {f.position, f.velocity}, then) ? Taken::kYes
                                                                             : Taken::kTooOld;
 }
 
 }  // namespace position_filter_detail
 
-// Position (m, NED) as measured at t_measured, not after the filter's time; sigma per axis.
+// Position (m, NED) as measured at t_measured, at most one step after the filter's time; sigma per
+// axis.
 template <class T>
 Judged<T> update_position(PositionFilter<T>& f, const PositionNoise<T>& noise, double t_measured,
                           const Vec3<T>& z, const Vec3<T>& sigma) {
   if (!std::isfinite(t_measured) || !finite(z) || !finite(sigma))
     return {count(f.tally, Taken::kNotFinite), T(0), {}};
   Place3<T> then;
-  const Taken known = position_filter_detail::past(f, t_measured, then);
+  const Taken known = position_filter_detail::past(f, noise, t_measured, then);
   if (known != Taken::kYes) return {count(f.tally, known), T(0), {}};
   const T age = static_cast<T>(f.t - t_measured), e[3] = {z.x - then.position.x,
       z.y - then.position.y, z.z - then.position.z}, s[3] = {sigma.x, sigma.y, sigma.z};
@@ -182,7 +184,7 @@ Judged<T> update_velocity(PositionFilter<T>& f, const PositionNoise<T>& noise, d
   if (!std::isfinite(t_measured) || !finite(z) || !finite(sigma))
     return {count(f.tally, Taken::kNotFinite), T(0), {}};
   Place3<T> then;
-  const Taken known = position_filter_detail::past(f, t_measured, then);
+  const Taken known = position_filter_detail::past(f, noise, t_measured, then);
   if (known != Taken::kYes) return {count(f.tally, known), T(0), {}};
   const T e[3] = {z.x - then.velocity.x, z.y - then.velocity.y, z.z - then.velocity.z};
   const T s[3] = {sigma.x, sigma.y, sigma.z};
@@ -202,7 +204,7 @@ Judged<T> update_height(PositionFilter<T>& f, const PositionNoise<T>& noise, dou
   if (!std::isfinite(t_measured) || !std::isfinite(z) || !std::isfinite(sigma))
     return {count(f.tally, Taken::kNotFinite), T(0), {}};
   Place3<T> then;
-  const Taken known = position_filter_detail::past(f, t_measured, then);
+  const Taken known = position_filter_detail::past(f, noise, t_measured, then);
   if (known != Taken::kYes) return {count(f.tally, known), T(0), {}};
   Innovation<T, 1, 2> in{{2, 5}};
   in.e[0] = -z - then.position.z;

@@ -1,0 +1,118 @@
+"""Where to start: attitude from gravity and field, velocity and position from the satellites."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from alula.base.arrays import Array
+from alula.base.messages import Message, refuse, warn
+from alula.navigate.attitude import attitude_from_vectors
+from alula.navigate.result import quaternion
+from alula.navigate.samples import Inertial, Readings
+
+SPAN = 1.0  # s of samples that are looked at
+UNKNOWN = 1.8  # rad: of a heading that may be any, pi over the root of 3
+DRIFT = 0.5  # rad: of a heading taken from the course over ground
+
+
+@dataclass(frozen=True)
+class Start:
+    """State at time t, s, and its standard deviations.
+
+    euler: phi theta psi, rad; velocity, position: NED. sigma_turn: rad about the body axes; the
+    other standard deviations in SI.
+    """
+
+    t: float
+    euler: tuple[float, float, float]
+    velocity: Array
+    position: Array
+    sigma_turn: tuple[float, float, float] = (0.1, 0.1, 0.3)
+    sigma_velocity: float = 1.0
+    sigma_position: float = 5.0
+    sigma_gyro_bias: float = 0.01
+    sigma_force_bias: float = 0.1
+    sigma_wind: float = 10.0
+    sigma_height_bias: float = 5.0
+
+    def state(self) -> Array:
+        """q, velocity, position (10,)."""
+        return np.concatenate([quaternion(*self.euler), self.velocity, self.position])
+
+
+def first_state(
+    inertial: Inertial,
+    readings: Sequence[Readings],
+    field: Array | None = None,
+    gravity: float = 9.80665,
+) -> tuple[Start, tuple[Message, ...]]:
+    """A start from the first second: bank and pitch from the mean specific force, heading from the
+    field, else from the course over ground, else unknown.
+
+    field: (3,) T, NED. Raises BadInput where no inertial sample is a number.
+    """
+    t = inertial.t
+    good = np.isfinite(t) & np.isfinite(inertial.force).all(axis=1)
+    if not good.any():
+        raise refuse(
+            "no_inertial_sample",
+            where="navigation, start",
+            expected="specific force",
+            found="no sample that is a number",
+            do="Check the channels ax, ay, az.",
+        )
+    t0 = float(t[good][0])
+    now = good & (t <= t0 + SPAN)
+    gravity_B = -np.mean(inertial.force[now], axis=0)
+    by_kind = {r.kind: _mean(r, t0) for r in reversed(readings)}
+    velocity = by_kind.get("velocity")
+    position = by_kind.get("position")
+    seen = by_kind.get("field")
+    messages: list[Message] = []
+    sigma_heading = UNKNOWN
+    if seen is not None and field is not None:
+        found = attitude_from_vectors(gravity_B[None], seen[None], field, gravity)
+        euler = tuple(found.euler[0])
+        sigma_heading = 0.2 if found.heading[0] else UNKNOWN
+    else:
+        euler = (
+            float(np.arctan2(gravity_B[1], gravity_B[2])),
+            float(np.arctan2(-gravity_B[0], np.hypot(gravity_B[1], gravity_B[2]))),
+            0.0,
+        )
+    if sigma_heading == UNKNOWN and velocity is not None and np.hypot(*velocity[:2]) > 5.0:
+        euler = (euler[0], euler[1], float(np.arctan2(velocity[1], velocity[0])))
+        sigma_heading = DRIFT
+    if sigma_heading == UNKNOWN:
+        messages.append(
+            warn(
+                "unknown_heading",
+                where="navigation, start",
+                expected="a magnetic field or a course over ground in the first second",
+                found="neither",
+                do="Nothing, if the flight turns: the heading is found when it speeds up.",
+            )
+        )
+    start = Start(
+        t=t0,
+        euler=(float(euler[0]), float(euler[1]), float(euler[2])),
+        velocity=np.zeros(3) if velocity is None else velocity,
+        position=np.zeros(3) if position is None else position,
+        sigma_turn=(0.1, 0.1, sigma_heading),
+        sigma_velocity=20.0 if velocity is None else 1.0,
+        sigma_position=1000.0 if position is None else 10.0,
+    )
+    return start, tuple(messages)
+
+
+def _mean(r: Readings, t0: float) -> Array | None:
+    """Mean of the readings in the first second; where none is, the first that is a number."""
+    values = np.asarray(r.values, dtype=np.float64).reshape(len(r.values), -1)
+    good = np.isfinite(values).all(axis=1)
+    now = good & (r.t >= t0 - SPAN) & (r.t <= t0 + SPAN)
+    if r.kind == "position" and now.any():  # what moves is not averaged
+        return np.asarray(values[now][0])
+    return np.asarray(values[now].mean(axis=0)) if now.any() else None
