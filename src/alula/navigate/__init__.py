@@ -5,7 +5,7 @@ from alula.navigate.joint import JointSettings, navigate_joint
 from alula.navigate.pair import PairSettings, navigate_pair
 from alula.navigate.power_train import PowerTrainState, power_train
 from alula.navigate.result import Navigation, Taking, quaternion, rotations
-from alula.navigate.samples import Inertial, Readings
+from alula.navigate.samples import Inertial, Readings, assumed_sideslip
 from alula.navigate.start import Start, first_state
 from alula.navigate.wind import AirEstimate, WindEstimate, air_from_wind, wind_from
 
@@ -22,6 +22,7 @@ __all__ = [
     "VectorAttitude",
     "WindEstimate",
     "air_from_wind",
+    "assumed_sideslip",
     "attitude_from_vectors",
     "first_state",
     "gravity_seen",

@@ -25,15 +25,15 @@ from alula.navigate.start import Start, first_state
 class PairSettings:
     """Noise and constants, SI; densities per root Hz, walks per root second.
 
-    measured: standard deviations of a measured attitude, phi theta psi, rad: Pusztai's, which
-    count in that turbulence is seen as gravity.
+    measured: standard deviations of a measured attitude, phi theta psi, rad, as if white at 50 Hz:
+    3 deg that last 10 s weigh as much as 1 rad.
     accelerometer: what the attitude's error adds to it counts in. field: (3,) T, NED. steps:
     inertial samples for one step of the position filter.
     """
 
     gyro: float = 2e-4
     gyro_walk: float = 1e-5
-    measured: tuple[float, float, float] = (0.5, 0.25, 0.2)
+    measured: tuple[float, float, float] = (1.0, 1.0, 1.0)
     accelerometer: float = 0.2
     accelerometer_walk: float = 3e-3
     gravity: float = 9.80665

@@ -89,3 +89,14 @@ def merged(readings: Sequence[Readings]) -> tuple[Array, Array]:
     # a stamp that is no number cannot be put in order: it comes last and is refused there
     order = np.argsort(np.where(np.isfinite(rows[:, 1]), rows[:, 1], np.inf), kind="stable")
     return np.ascontiguousarray(rows[order]), whose[order]
+
+
+def assumed_sideslip(inertial: Inertial, sigma: float = 0.07, rate: float = 1.0) -> Readings:
+    """Sideslip near zero, as readings of what is not measured: an airplane flies straight ahead.
+
+    Without it an airspeed alone leaves the wind across unknown until the flight has turned. sigma:
+    rad, of the true sideslip about zero; rate: Hz, slow enough for its gusts to be new each time.
+    """
+    t = inertial.t[np.isfinite(inertial.t)]
+    stamps = np.arange(float(t[0]), float(t[-1]), 1.0 / rate)
+    return Readings("beta", stamps, np.zeros(len(stamps)), sigma)

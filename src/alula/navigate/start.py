@@ -48,11 +48,12 @@ def first_state(
     readings: Sequence[Readings],
     field: Array | None = None,
     gravity: float = 9.80665,
+    heading: float | None = None,
 ) -> tuple[Start, tuple[Message, ...]]:
     """A start from the first second: bank and pitch from the mean specific force, heading from the
-    field, else from the course over ground, else unknown.
+    field, else as given, else from the course over ground, else unknown.
 
-    field: (3,) T, NED. Raises BadInput where no inertial sample is a number.
+    field: (3,) T, NED. heading: rad. Raises BadInput where no inertial sample is a number.
     """
     t = inertial.t
     good = np.isfinite(t) & np.isfinite(inertial.force).all(axis=1)
@@ -83,6 +84,9 @@ def first_state(
             float(np.arctan2(-gravity_B[0], np.hypot(gravity_B[1], gravity_B[2]))),
             0.0,
         )
+    if sigma_heading == UNKNOWN and heading is not None and np.isfinite(heading):
+        euler = (euler[0], euler[1], heading)
+        sigma_heading = 0.1
     if sigma_heading == UNKNOWN and velocity is not None and np.hypot(*velocity[:2]) > 5.0:
         euler = (euler[0], euler[1], float(np.arctan2(velocity[1], velocity[0])))
         sigma_heading = DRIFT
@@ -96,6 +100,11 @@ def first_state(
                 do="Nothing, if the flight turns: the heading is found when it speeds up.",
             )
         )
+    height, off = by_kind.get("height"), 0.0
+    if height is not None and position is None:  # counted from where it starts
+        position = np.array([0.0, 0.0, -float(height[0])])
+    elif height is not None and position is not None:  # two datums: the barometer is off by it
+        off = float(height[0] + position[2])
     start = Start(
         t=t0,
         euler=(float(euler[0]), float(euler[1]), float(euler[2])),
@@ -104,6 +113,7 @@ def first_state(
         sigma_turn=(0.1, 0.1, sigma_heading),
         sigma_velocity=20.0 if velocity is None else 1.0,
         sigma_position=1000.0 if position is None else 10.0,
+        sigma_height_bias=5.0 + abs(off),
     )
     return start, tuple(messages)
 

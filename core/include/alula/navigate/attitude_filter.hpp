@@ -15,8 +15,9 @@ template <class T>
 struct AttitudeNoise {
   T gyro{T(2e-4)};        // rad/s per root Hz
   T gyro_walk{T(1e-5)};   // rad/s per root s
-  // Of a measured attitude, rad, phi theta psi; in turbulence gravity is seen badly (his table D).
-  Vec3<T> measured{T(0.5), T(0.25), T(0.2)};
+  // Of a measured attitude, phi theta psi, rad, as if white at 50 Hz. It is not: what maneuvers and
+  // turbulence add, 3 deg or so, lasts some 10 s; over 500 samples that weighs as much as 1 rad.
+  Vec3<T> measured{T(1), T(1), T(1)};
   T longest_step{T(0.1)};  // s; beyond it the sample comes after a hole
   T unknown_rate{T(0.3)};  // rad/s that the aircraft may turn with in a hole
   T gate{T(25)};           // of three angles together: one in 100 000 by chance

@@ -4,6 +4,7 @@
 // with R = R_BE, f the specific force less its bias, f_E = R' f
 //   d theta = -w x theta - db_g,   d dv = -f_E x R' theta - R' db_a,   d dp = dv,
 // gust: Gauss-Markov of length L at the airspeed; wind, biases: random walks.
+#include "alula/math/limit.hpp"
 #include "alula/navigate/joint_state.hpp"
 
 namespace alula {
@@ -115,10 +116,13 @@ Taken predict(JointFilter<T>& f, const JointNoise<T>& noise, double t, const Vec
   }
   joint_filter_detail::spread(f, dt, earth_to_body(turn), B, C, keep);
   joint_filter_detail::age(f, noise, dt, keep);
-  if (hole) {  // what it did meanwhile is not known
+  if (hole) {  // what it did meanwhile is not known; yet airplanes stay more or less upright
     const T v = noise.unknown_acceleration * dt, p = T(0.5) * v * dt, s = noise.unknown_rate * dt;
-    const T turned = s * s > T(3.3) ? T(3.3) : s * s;  // of an attitude that may be any
-    add_variance(f.P, kTurn, {turned, turned, turned});
+    const T tilt = limited(s * s, T(0), T(0.1)), heading = limited(s * s, T(0), T(3.3)) - tilt;
+    const T down[3] = {R_BE.row[0].z, R_BE.row[1].z, R_BE.row[2].z};
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) f.P.P[i][j] += heading * down[i] * down[j];
+    add_variance(f.P, kTurn, {tilt, tilt, tilt});
     add_variance(f.P, kVelocity, {v * v, v * v, v * v});
     add_variance(f.P, kPosition, {p * p, p * p, p * p});
   }

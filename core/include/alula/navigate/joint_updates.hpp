@@ -104,6 +104,13 @@ Judged<T> satellite(JointFilter<T>& f, const JointNoise<T>& noise, double t_meas
   return take(f, noise, in, position ? kOfPosition : kOfVelocity);
 }
 
+// Air data are not linear in an attitude or a velocity that may be any: they wait for the others.
+template <class T>
+bool ready_for_air(const JointFilter<T>& f, T V) {
+  const auto spread = [&f](int i) { return f.P.P[i][i] + f.P.P[i + 1][i + 1] + f.P.P[i + 2][i + 2]; };
+  return f.started && spread(kTurn) < T(0.5) && spread(kVelocity) < T(0.25) * V * V;
+}
+
 // A scalar of the air velocity v (body axes, at its sensor) with gradient g.
 template <class T>
 Innovation<T, 1, 15> of_the_air(const JointFilter<T>& f, const JointNoise<T>& noise,
@@ -203,7 +210,7 @@ Judged<T> update_airspeed(JointFilter<T>& f, const JointNoise<T>& noise, T z, T 
   if (!std::isfinite(z) || !std::isfinite(sigma)) return refused(f, Taken::kNotFinite);
   const Vec3<T> v = air_velocity_at_sensor(f, noise);
   const T V = std::sqrt(dot(v, v));
-  if (!f.started || !(V > noise.least_airspeed) || !(z > noise.least_airspeed))
+  if (!(V > noise.least_airspeed) || !(z > noise.least_airspeed) || !ready_for_air(f, V))
     return refused(f, Taken::kUnusable);
   return take(f, noise, of_the_air(f, noise, (T(1) / V) * v, z - V, sigma), kOfAir);
 }
@@ -215,7 +222,8 @@ Judged<T> update_alpha(JointFilter<T>& f, const JointNoise<T>& noise, T z, T sig
   if (!std::isfinite(z) || !std::isfinite(sigma)) return refused(f, Taken::kNotFinite);
   const Vec3<T> v = air_velocity_at_sensor(f, noise);
   const T plane = v.x * v.x + v.z * v.z;
-  if (!f.started || !(plane > noise.least_airspeed * noise.least_airspeed))
+  if (!(plane > noise.least_airspeed * noise.least_airspeed) ||
+      !ready_for_air(f, std::sqrt(plane)))
     return refused(f, Taken::kUnusable);
   const Vec3<T> g{-v.z / plane, T(0), v.x / plane};
   return take(f, noise, of_the_air(f, noise, g, wrapped(z - std::atan2(v.z, v.x)), sigma), kOfAir);
@@ -228,7 +236,8 @@ Judged<T> update_beta(JointFilter<T>& f, const JointNoise<T>& noise, T z, T sigm
   if (!std::isfinite(z) || !std::isfinite(sigma)) return refused(f, Taken::kNotFinite);
   const Vec3<T> v = air_velocity_at_sensor(f, noise);
   const T plane = v.x * v.x + v.z * v.z;
-  if (!f.started || !(plane > noise.least_airspeed * noise.least_airspeed))
+  if (!(plane > noise.least_airspeed * noise.least_airspeed) ||
+      !ready_for_air(f, std::sqrt(plane)))
     return refused(f, Taken::kUnusable);
   const T root = std::sqrt(plane), k = T(1) / ((plane + v.y * v.y) * root);
   const Vec3<T> g{-k * v.x * v.y, k * plane, -k * v.z * v.y};
