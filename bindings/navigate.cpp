@@ -1,8 +1,11 @@
 // Navigation filters over recordings: inertial samples, and measurements as they arrived.
+#include <nanobind/stl/tuple.h>
+
 #include <alula/navigate/joint_updates.hpp>
 #include <alula/navigate/pair.hpp>
 #include <cmath>
 #include <memory>
+#include <tuple>
 
 #include "arrays.hpp"
 #include "bind.hpp"
@@ -30,12 +33,13 @@ void put(double* p, const Vec& v) {
 }
 
 template <class F>
-auto vector_property(Vec F::*member) {
-  return std::pair{[member](const F& f) { return nb::make_tuple((f.*member).x, (f.*member).y,
-                                                                (f.*member).z); },
-                   [member](F& f, std::tuple<double, double, double> v) {
-                     f.*member = {std::get<0>(v), std::get<1>(v), std::get<2>(v)};
-                   }};
+auto vector_property(Vec F::* member) {
+  using Three = std::tuple<double, double, double>;
+  return std::pair{
+      [member](const F& f) -> Three { return {(f.*member).x, (f.*member).y, (f.*member).z}; },
+      [member](F& f, const Three& v) {
+        f.*member = {std::get<0>(v), std::get<1>(v), std::get<2>(v)};
+      }};
 }
 
 Judged<double> take(JointFilter<double>& f, const JointNoise<double>& noise, const double* row) {
@@ -117,8 +121,8 @@ Result run(F& f, const Noise& noise, Vector t, Matrix rate, Matrix force, Matrix
   check(force.shape(0) == n && force.shape(1) == 3, "force: expected (n, 3)");
   check(m == 0 || events.shape(1) == kColumns, "events: expected (m, 9)");
   check(every >= 1, "every: expected 1 or more");
-  const int rows = static_cast<int>((n + static_cast<std::size_t>(every) - 1) /
-                                    static_cast<std::size_t>(every));
+  const int rows =
+      static_cast<int>((n + static_cast<std::size_t>(every) - 1) / static_cast<std::size_t>(every));
   Array<double> time({rows}), x({rows, columns}), P({rows, states, states});
   Array<double> nis({static_cast<int>(m)}), e({static_cast<int>(m), 3});
   Array<int> taken({static_cast<int>(m)}), taken_inertial({static_cast<int>(n)});
@@ -161,22 +165,17 @@ Result run(F& f, const Noise& noise, Vector t, Matrix rate, Matrix force, Matrix
 }  // namespace
 
 void bind_navigate(nb::module_& m) {
-  m.attr("NAVIGATE_KINDS") =
-      nb::make_tuple("position", "velocity", "field", "height", "V", "alpha", "beta");
-  m.attr("NAVIGATE_TAKEN") = nb::make_tuple("taken", "not_finite", "backwards", "gated", "too_old",
-                                            "unusable", "gap");
+  m.attr("NAVIGATE_KINDS") = "position velocity field height V alpha beta";
+  m.attr("NAVIGATE_TAKEN") = "taken not_finite backwards gated too_old unusable gap";
   using J = JointNoise<double>;
   using A = AttitudeNoise<double>;
   using Q = PositionNoise<double>;
   nb::class_<J> joint(m, "JointNoise", "Noise and constants of the joint filter, SI.");
   joint.def(nb::init<>());
-#define ALULA_VECTOR(cls, owner, member)                                           \
-  {                                                                                \
-    auto p = vector_property(&owner::member);                                      \
-    cls.def_prop_rw(#member, p.first, [s = p.second](owner& f, nb::tuple v) {      \
-      check(v.size() == 3, #member ": expected three numbers");                    \
-      s(f, {nb::cast<double>(v[0]), nb::cast<double>(v[1]), nb::cast<double>(v[2])}); \
-    });                                                                            \
+#define ALULA_VECTOR(cls, owner, member)         \
+  {                                              \
+    auto p = vector_property(&owner::member);    \
+    cls.def_prop_rw(#member, p.first, p.second); \
   }
   joint.def_rw("gyro", &J::gyro)
       .def_rw("gyro_walk", &J::gyro_walk)
@@ -192,6 +191,7 @@ void bind_navigate(nb::module_& m) {
   ALULA_VECTOR(joint, J, gust_length)
   ALULA_VECTOR(joint, J, field)
   ALULA_VECTOR(joint, J, air_sensor)
+  ALULA_VECTOR(joint, J, antenna)
 
   nb::class_<A> attitude(m, "AttitudeNoise", "Noise of the attitude filter, SI.");
   attitude.def(nb::init<>())
@@ -213,20 +213,20 @@ void bind_navigate(nb::module_& m) {
       "navigate_joint",
       [](const J& noise, Vector start_state, Vector start_sigma, double t0, Vector t, Matrix rate,
          Matrix force, Matrix events, int every) {
-        check(start_state.shape(0) == 10, "start_state: expected q (4), velocity, position");
-        check(start_sigma.shape(0) == 9, "start_sigma: expected turn (3) and six others");
+        check(start_state.shape(0) == 13, "start_state: expected q (4), velocity, position, wind");
+        check(start_sigma.shape(0) == 8, "start_sigma: expected tilt, heading and six others");
         const double* s = start_state.data();
         const double* d = start_sigma.data();
         auto f = std::make_unique<JointFilter<double>>();
         start(*f, noise, t0, {s[0], s[1], s[2], s[3]}, at(s + 4), at(s + 7),
-              JointStart<double>{at(d), d[3], d[4], d[5], d[6], d[7], d[8]});
+              JointStart<double>{d[0], d[1], at(s + 10), d[2], d[3], d[4], d[5], d[6], d[7]});
         return run(*f, noise, t, rate, force, events, every, kJointOut, kJointStates);
       },
-      nb::arg("noise"), nb::arg("start_state"), nb::arg("start_sigma"), nb::arg("t0"),
-      nb::arg("t"), nb::arg("rate"), nb::arg("force"), nb::arg("events"), nb::arg("every") = 1,
+      nb::arg("noise"), nb::arg("start_state"), nb::arg("start_sigma"), nb::arg("t0"), nb::arg("t"),
+      nb::arg("rate"), nb::arg("force"), nb::arg("events"), nb::arg("every") = 1,
       "The joint filter over t (n,), rate and force (n, 3), and events (m, 9) in the order of\n"
       "their arrival: kind, t of arrival, t measured, z (3), sigma (3). start_state: quaternion,\n"
-      "velocity, position (10,); start_sigma: turn (3), velocity, position, gyro bias,\n"
+      "velocity, position, wind (13,); start_sigma: tilt, heading, velocity, position, gyro bias,\n"
       "accelerometer bias, wind, height bias. Every so many samples: t (k,), x (k, 26),\n"
       "covariance (k, 22, 22); of each event what became of it, nis, deviation of innovations.");
   m.def(
@@ -235,22 +235,23 @@ void bind_navigate(nb::module_& m) {
          Vector start_sigma, double t0, Vector t, Matrix rate, Matrix force, Matrix events,
          int every) {
         check(start_state.shape(0) == 10, "start_state: expected q (4), velocity, position");
-        check(start_sigma.shape(0) == 7, "start_sigma: expected turn (3) and four others");
+        check(start_sigma.shape(0) == 6, "start_sigma: expected tilt, heading and four others");
         check(steps >= 1, "steps: expected 1 or more");
         const double* s = start_state.data();
         const double* d = start_sigma.data();
         auto f = std::make_unique<Pair<double>>();
         const PairNoise<double> noise{attitude, position, vec3(field, "field: expected (3,)"),
                                       steps};
-        start(f->attitude, t0, {s[0], s[1], s[2], s[3]}, at(d), d[5]);
-        start(f->position, t0, at(s + 7), at(s + 4), d[4], d[3], d[6]);
+        start(f->attitude, t0, {s[0], s[1], s[2], s[3]}, d[0], d[1], d[4]);
+        start(f->position, t0, at(s + 7), at(s + 4), d[3], d[2], d[5]);
         return run(*f, noise, t, rate, force, events, every, kPairOut, 15);
       },
       nb::arg("attitude"), nb::arg("position"), nb::arg("field"), nb::arg("steps"),
-      nb::arg("start_state"), nb::arg("start_sigma"), nb::arg("t0"), nb::arg("t"),
-      nb::arg("rate"), nb::arg("force"), nb::arg("events"), nb::arg("every") = 1,
+      nb::arg("start_state"), nb::arg("start_sigma"), nb::arg("t0"), nb::arg("t"), nb::arg("rate"),
+      nb::arg("force"), nb::arg("events"), nb::arg("every") = 1,
       "Attitude and position filter in turn; as navigate_joint, with x (k, 16) and covariance\n"
-      "(k, 15, 15): turn, gyro bias, position, velocity, accelerometer bias. start_sigma: turn\n"
-      "(3), velocity, position, gyro bias, accelerometer bias. steps: inertial samples for one\n"
+      "(k, 15, 15): turn, gyro bias, position, velocity, accelerometer bias. start_sigma: tilt,\n"
+      "heading, velocity, position, gyro bias, accelerometer bias. steps: inertial samples for "
+      "one\n"
       "step of the position filter.");
 }

@@ -50,7 +50,7 @@ std::pair<double, double> timed(const std::string& what, int steps) {
   if (what == "attitude") {
     AttitudeFilter<T> f;
     const AttitudeNoise<T> noise;
-    start(f, 0.0, level, {T(0.1), T(0.1), T(0.1)}, T(0.01));
+    start(f, 0.0, level, T(0.1), T(0.1), T(0.01));
     begin = seconds();
     for (int i = 1; i <= steps; ++i) predict(f, noise, i * dt, waves.rate[i & 63]);
     end = seconds();
@@ -58,7 +58,7 @@ std::pair<double, double> timed(const std::string& what, int steps) {
   } else if (what == "attitude_update") {
     AttitudeFilter<T> f;
     const AttitudeNoise<T> noise;
-    start(f, 0.0, level, {T(0.1), T(0.1), T(0.1)}, T(0.01));
+    start(f, 0.0, level, T(0.1), T(0.1), T(0.01));
     MeasuredAttitude<T> z{{T(0.01), T(0.02), T(0)}, T(1), true, true};
     begin = seconds();
     for (int i = 1; i <= steps; ++i) {
@@ -219,7 +219,7 @@ void bind_navigate_tools(nb::module_& m) {
               air_from_wind<double>(at(velocity.data() + 3 * i), sv, {k[0], k[1], k[2], k[3]}, st,
                                     at(wind.data() + 3 * i), cov);
           double* o = out.data() + 6 * i;
-          const double row[6] = {found.flow.V,  found.flow.alpha,   found.flow.beta,
+          const double row[6] = {found.flow.V,  found.flow.alpha,  found.flow.beta,
                                  found.sigma_V, found.sigma_alpha, found.sigma_beta};
           for (int j = 0; j < 6; ++j) o[j] = found.valid ? row[j] : std::nan("");
         }
@@ -246,9 +246,9 @@ void bind_navigate_tools(nb::module_& m) {
           const bool none = std::isnan(speed(i));
           const Taken taken =
               step(f, electric, quiet, t(i), throttle(i), none ? 0.0 : speed(i), none);
-          const double row[9] = {f.omega,   f.acceleration, std::sqrt(f.P[0][0]),
-                                 f.motor_current, f.current, f.charge,
-                                 f.voltage, f.left,         static_cast<double>(taken)};
+          const double row[9] = {f.omega,         f.acceleration, std::sqrt(f.P[0][0]),
+                                 f.motor_current, f.current,      f.charge,
+                                 f.voltage,       f.left,         static_cast<double>(taken)};
           for (std::size_t j = 0; j < 9; ++j) out(i, j) = row[j];
         }
       },

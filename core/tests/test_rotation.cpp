@@ -101,8 +101,7 @@ TYPED_TEST(Rotation, AttitudeFromGravityAndField) {
       for (const double psi : {-3.1, -1.0, 0.0, 2.2}) {
         const auto q = alula::quaternion_from_euler(T(phi), T(theta), T(psi));
         const auto R = alula::earth_to_body(q);
-        const auto z =
-            alula::measured_attitude(R * Vec3<T>{T(0), T(0), T(kG)}, R * B, B, T(kG));
+        const auto z = alula::measured_attitude(R * Vec3<T>{T(0), T(0), T(kG)}, R * B, B, T(kG));
         ASSERT_TRUE(z.valid && z.heading);
         EXPECT_NEAR(double(z.gain), 1.0, 1e-4);
         const auto found = alula::quaternion_from_euler(z.euler.x, z.euler.y, z.euler.z);
@@ -127,12 +126,12 @@ TYPED_TEST(Rotation, GimbalAttitudeIsStillAnAttitude) {
 TYPED_TEST(Rotation, WhatSaysNothingIsSaid) {
   using T = TypeParam;
   const Vec3<T> B = navigate_case::kField<T>, g{T(0), T(0), T(kG)};
-  EXPECT_FALSE(alula::attitude_from_vectors(Vec3<T>{}, B, B).valid);           // free fall
-  EXPECT_FALSE(alula::attitude_from_vectors(T(2) * B, B, B).valid);            // parallel
+  EXPECT_FALSE(alula::attitude_from_vectors(Vec3<T>{}, B, B).valid);  // free fall
+  EXPECT_FALSE(alula::attitude_from_vectors(T(2) * B, B, B).valid);   // parallel
   EXPECT_FALSE(alula::measured_attitude(Vec3<T>{}, B, B, T(kG)).valid);
-  EXPECT_FALSE(alula::measured_attitude(g, T(1.3) * B, B, T(kG)).heading);     // too strong
+  EXPECT_FALSE(alula::measured_attitude(g, T(1.3) * B, B, T(kG)).heading);  // too strong
   EXPECT_FALSE(alula::measured_attitude(g, Vec3<T>{B.z, B.y, B.x}, B, T(kG)).heading);  // dip
-  EXPECT_TRUE(alula::measured_attitude(g, T(1.3) * B, B, T(kG)).valid);        // gravity alone
+  EXPECT_TRUE(alula::measured_attitude(g, T(1.3) * B, B, T(kG)).valid);  // gravity alone
   EXPECT_EQ(double(alula::acceleration_gain(T(1.2) * g, T(kG))), 0.0);
   EXPECT_NEAR(double(alula::acceleration_gain(T(1.05) * g, T(kG))), 0.5, 1e-5);
 }

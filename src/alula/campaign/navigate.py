@@ -26,6 +26,7 @@ from alula.navigate.from_flight import samples_of
 from alula.report import ReportInput
 
 ROWS = 20_000  # of the result, at most, for each log
+_ARMS = ("V", "v_north")  # whose sensors' positions matter
 LEAST_TAKEN = 0.5  # of a sensor's readings; below it sensor and filter contradict each other
 
 
@@ -138,10 +139,11 @@ def _navigate(
         return navigate_pair(samples.inertial, readings, pair, start, every), said
     if samples.accelerometer is not None:
         noise["accelerometer"] = samples.accelerometer
-    arm = aircraft.sensor_position("V") - aircraft.sensor_position("ax")
+    air, gps = (aircraft.sensor_position(n) - aircraft.sensor_position("ax") for n in _ARMS)
     joint = JointSettings(
         field=field, gust=(spec.gust,) * 3, gust_length=(spec.gust_length,) * 3,
-        air_sensor=(float(arm[0]), float(arm[1]), float(arm[2])), **noise,
+        air_sensor=(float(air[0]), float(air[1]), float(air[2])),
+        antenna=(float(gps[0]), float(gps[1]), float(gps[2])), **noise,
     )  # fmt: skip
     result = navigate_joint(samples.inertial, readings, joint, start, every)
     return replace(result, messages=tuple(heading_said)), said

@@ -35,7 +35,9 @@ def world_magnetic_model(
     try:
         model.setup_time(day.year, day.month, day.day)
         model.setup_env(degrees(latitude), degrees(longitude), 1e-3 * height, unit="km", msl=True)
-        north, east, down = (float(b.item()) for b in (model.get_Bx(), model.get_By(), model.get_Bz()))
+        north, east, down = (
+            float(b.item()) for b in (model.get_Bx(), model.get_By(), model.get_Bz())
+        )
     except ValueError as error:
         raise refuse(
             "outside_field_model",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -41,7 +42,7 @@ class FlightSamples:
 
 
 def samples_of(
-    flight: Flight, sensors: Mapping[str, SensorSpec], imu: Mapping[str, NoiseSpec]
+    flight: Flight, sensors: Mapping[str, SensorSpec], imu: Mapping[Any, NoiseSpec]
 ) -> FlightSamples:
     """Inertial samples and readings of a flight.
 
@@ -147,7 +148,7 @@ def _position(flight: Flight, sigma: Sigma, there: There) -> Readings:
     return Readings("position", stamps, values, deviations)
 
 
-def _density(imu: Mapping[str, NoiseSpec], names: Sequence[str], step: float) -> float | None:
+def _density(imu: Mapping[Any, NoiseSpec], names: Sequence[str], step: float) -> float | None:
     """Noise per root Hz of the worst axis whose noise per sample is stated."""
     stated = [imu[n].sigma_si for n in names if n in imu]
     return max(stated) * float(np.sqrt(step)) if stated and max(stated) > 0.0 else None

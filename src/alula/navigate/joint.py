@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from alula.base.arrays import Array, frozen
+from alula.base.messages import Message
 from alula.core import core
 from alula.navigate.result import (
     JOINT_STATES,
@@ -26,7 +27,8 @@ class JointSettings:
 
     gust: standard deviation of the turbulence (3,) NED m/s, gust_length (3,) m: Gauss-Markov along
     the way through the air. wind_walk: of the wind that it goes about. field: (3,) T, NED; None: no
-    magnetometer is taken. air_sensor: (3,) m from the inertial sensor, body axes.
+    magnetometer is taken. air_sensor, antenna of the satellites: (3,) m from the inertial sensor,
+    body axes.
     """
 
     gyro: float = 2e-4
@@ -40,6 +42,7 @@ class JointSettings:
     gravity: float = 9.80665
     field: tuple[float, float, float] | None = None
     air_sensor: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    antenna: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
 def navigate_joint(
@@ -54,23 +57,23 @@ def navigate_joint(
     Readings that are late (`Readings.arrived`), not numbers, out of order or far off are taken as
     late, or refused and counted; see `Navigation.takings`.
     """
+    rows, whose = merged(readings)
     settings = settings or JointSettings()
-    messages = ()
+    messages: tuple[Message, ...] = ()
     if start is None:
         field = None if settings.field is None else np.array(settings.field)
         start, messages = first_state(inertial, readings, field, settings.gravity)
     noise = core.JointNoise()
     for name in (
         "gyro", "gyro_walk", "accelerometer", "accelerometer_walk", "wind_walk", "gust",
-        "gust_length", "height_walk", "gravity", "air_sensor",
+        "gust_length", "height_walk", "gravity", "air_sensor", "antenna",
     ):  # fmt: skip
         setattr(noise, name, getattr(settings, name))
     if settings.field is not None:
         x, y, z = settings.field
         noise.field = (MICRO * x, MICRO * y, MICRO * z)
-    rows, whose = merged(readings)
     sigma = np.array(
-        [*start.sigma_turn, start.sigma_velocity, start.sigma_position, start.sigma_gyro_bias,
+        [start.sigma_tilt, start.sigma_heading, start.sigma_velocity, start.sigma_position, start.sigma_gyro_bias,
          start.sigma_force_bias, start.sigma_wind, start.sigma_height_bias]
     )  # fmt: skip
     found = core.navigate_joint(

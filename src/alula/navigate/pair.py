@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from alula.base.arrays import frozen
+from alula.base.messages import Message
 from alula.core import core
 from alula.navigate.joint import _before, _row
 from alula.navigate.result import (
@@ -51,8 +52,10 @@ def navigate_pair(
     """Run the pair. It takes position, velocity, height, field; an airspeed, where there is one,
     only for the centripetal part of the specific force. start: None finds one.
     """
+    readings = [r for r in readings if r.kind not in ("alpha", "beta")]
+    rows, whose = merged(readings)
     settings = settings or PairSettings()
-    messages = ()
+    messages: tuple[Message, ...] = ()
     if start is None:
         start, messages = first_state(
             inertial, readings, np.array(settings.field), settings.gravity
@@ -62,14 +65,12 @@ def navigate_pair(
         setattr(attitude, name, getattr(settings, name))
     for name in ("accelerometer", "accelerometer_walk", "gravity"):
         setattr(position, name, getattr(settings, name))
-    readings = [r for r in readings if r.kind not in ("alpha", "beta")]
-    rows, whose = merged(readings)
     sigma = np.array(
-        [*start.sigma_turn, start.sigma_velocity, start.sigma_position, start.sigma_gyro_bias,
+        [start.sigma_tilt, start.sigma_heading, start.sigma_velocity, start.sigma_position, start.sigma_gyro_bias,
          start.sigma_force_bias]
     )  # fmt: skip
     found = core.navigate_pair(
-        attitude, position, MICRO * np.array(settings.field), settings.steps, start.state(), sigma,
+        attitude, position, MICRO * np.array(settings.field), settings.steps, start.state()[:10], sigma,
         _before(start.t, inertial), _row(inertial.t), _row(inertial.rate), _row(inertial.force),
         rows, every,
     )  # fmt: skip

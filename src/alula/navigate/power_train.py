@@ -56,7 +56,8 @@ def power_train(
             do="Correct them.",
         )
     out = np.empty((len(columns[0]), 9))
-    core.power_train(_constants(motor), np.array([jerk, decay, sigma]), *columns, out)
+    stamps, duty, read = columns
+    core.power_train(_constants(motor), np.array([jerk, decay, sigma]), stamps, duty, read, out)
     taken = out[:, 8].astype(int)
     counts = {name: int(np.sum(taken == k)) for k, name in enumerate(TAKEN) if np.any(taken == k)}
     parts = [frozen(c) for c in out.T[:8]]

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from alula.base.arrays import Array, frozen
 from alula.base.messages import Message
@@ -39,12 +40,12 @@ class Taking:
     t: Array
     nis: Array
     deviation: Array
-    taken: Array
+    taken: NDArray[np.int32]
     counts: Mapping[str, int]
 
     @property
     def mean_nis(self) -> float:
-        """Mean of nis over its degrees of freedom, of what was taken: 1 where noise is as stated."""
+        """Mean of nis per degree of freedom, of what was taken: 1 where noise is as stated."""
         used = self.nis[self.taken == 0]
         return float(np.mean(used)) / self.width if len(used) else float("nan")
 
@@ -80,18 +81,18 @@ class Navigation:
     def part(self, name: str) -> Array:
         """Covariance (n, 3, 3) of one part; 'wind' with its gust."""
         here = self.states[name]
-        P = self.covariance[:, here, here]
+        P: Array = self.covariance[:, here, here]
         if name != "wind":
             return P
         gust = self.states["gust"]
         cross = self.covariance[:, here, gust]
-        return P + self.covariance[:, gust, gust] + cross + np.swapaxes(cross, 1, 2)
+        return np.asarray(P + self.covariance[:, gust, gust] + cross + np.swapaxes(cross, 1, 2))
 
     def se(self, name: str) -> Array:
         """Standard errors (n, 3) of one part; of 'euler' as phi theta psi, to first order."""
         if name == "euler":
-            return np.sqrt(np.einsum("nij,njk,nik->ni", *self._euler_parts()))
-        return np.sqrt(np.maximum(np.einsum("nii->ni", self.part(name)), 0.0))
+            return np.asarray(np.sqrt(np.einsum("nij,njk,nik->ni", *self._euler_parts())))
+        return np.asarray(np.sqrt(np.maximum(np.einsum("nii->ni", self.part(name)), 0.0)))
 
     def _euler_parts(self) -> tuple[Array, Array, Array]:
         phi, theta = self.euler[:, 0], self.euler[:, 1]
@@ -147,7 +148,7 @@ def quaternion(phi: float, theta: float, psi: float) -> Array:
 
 
 def takings_of(
-    found: Mapping[str, Any], rows: Array, whose: Array, readings: Sequence[Readings]
+    found: Mapping[str, Any], rows: Array, whose: NDArray[np.intp], readings: Sequence[Readings]
 ) -> tuple[Taking, ...]:
     """The core's verdicts by sensor."""
     out = []

@@ -6,13 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
 from alula.base.arrays import Array
 from alula.base.messages import refuse
 from alula.core import core
 
-KINDS: tuple[str, ...] = tuple(core.NAVIGATE_KINDS)
-TAKEN: tuple[str, ...] = tuple(core.NAVIGATE_TAKEN)
+KINDS: tuple[str, ...] = tuple(core.NAVIGATE_KINDS.split())
+TAKEN: tuple[str, ...] = tuple(core.NAVIGATE_TAKEN.split())
 VECTORS = ("position", "velocity", "field")
 MICRO = 1e6  # the core's numbers stay near one in microtesla
 
@@ -81,7 +82,7 @@ class Readings:
         return rows
 
 
-def merged(readings: Sequence[Readings]) -> tuple[Array, Array]:
+def merged(readings: Sequence[Readings]) -> tuple[Array, NDArray[np.intp]]:
     """Rows (m, 9) of all readings in the order of arrival, and whose each is (m,) of indices."""
     parts = [r.events() for r in readings]
     rows = np.concatenate([*parts, np.zeros((0, 9))])

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from alula.base.arrays import Array
+from alula.base.arrays import Array, frozen
 from alula.base.messages import Message, refuse, warn
-from alula.navigate.attitude import attitude_from_vectors
-from alula.navigate.result import quaternion
+from alula.navigate.attitude import attitude_from_vectors, gravity_seen
+from alula.navigate.result import quaternion, rotations
 from alula.navigate.samples import Inertial, Readings
 
 SPAN = 1.0  # s of samples that are looked at
@@ -22,15 +22,18 @@ DRIFT = 0.5  # rad: of a heading taken from the course over ground
 class Start:
     """State at time t, s, and its standard deviations.
 
-    euler: phi theta psi, rad; velocity, position: NED. sigma_turn: rad about the body axes; the
-    other standard deviations in SI.
+    euler: phi theta psi, rad; velocity, position, wind: NED. The wind should agree with the others
+    and the first air data; see `first_state`. sigma_tilt,
+    sigma_heading: rad, of bank and pitch and about the vertical; the others in SI.
     """
 
     t: float
     euler: tuple[float, float, float]
     velocity: Array
     position: Array
-    sigma_turn: tuple[float, float, float] = (0.1, 0.1, 0.3)
+    wind: Array = field(default_factory=lambda: frozen(np.zeros(3)))
+    sigma_tilt: float = 0.1
+    sigma_heading: float = 0.3
     sigma_velocity: float = 1.0
     sigma_position: float = 5.0
     sigma_gyro_bias: float = 0.01
@@ -39,21 +42,22 @@ class Start:
     sigma_height_bias: float = 5.0
 
     def state(self) -> Array:
-        """q, velocity, position (10,)."""
-        return np.concatenate([quaternion(*self.euler), self.velocity, self.position])
+        """q, velocity, position, wind (13,)."""
+        return np.concatenate([quaternion(*self.euler), self.velocity, self.position, self.wind])
 
 
 def first_state(
     inertial: Inertial,
     readings: Sequence[Readings],
-    field: Array | None = None,
+    field_E: Array | None = None,
     gravity: float = 9.80665,
     heading: float | None = None,
 ) -> tuple[Start, tuple[Message, ...]]:
-    """A start from the first second: bank and pitch from the mean specific force, heading from the
+    """A start from the first second: bank and pitch from the mean specific force less what a turn
+    at the first airspeed (or ground speed) adds, heading from the
     field, else as given, else from the course over ground, else unknown.
 
-    field: (3,) T, NED. heading: rad. Raises BadInput where no inertial sample is a number.
+    field_E: (3,) T, NED. heading: rad. Raises BadInput where no inertial sample is a number.
     """
     t = inertial.t
     good = np.isfinite(t) & np.isfinite(inertial.force).all(axis=1)
@@ -67,15 +71,20 @@ def first_state(
         )
     t0 = float(t[good][0])
     now = good & (t <= t0 + SPAN)
-    gravity_B = -np.mean(inertial.force[now], axis=0)
     by_kind = {r.kind: _mean(r, t0) for r in reversed(readings)}
-    velocity = by_kind.get("velocity")
+    velocity, airspeed = by_kind.get("velocity"), by_kind.get("V")
+    ahead = 0.0 if velocity is None else float(np.linalg.norm(velocity))
+    ahead = ahead if airspeed is None else float(airspeed[0])
+    rate = np.nan_to_num(np.nanmean(inertial.rate[now], axis=0))
+    gravity_B = gravity_seen(
+        np.mean(inertial.force[now], axis=0), rate, np.array([max(ahead, 0.0), 0.0, 0.0])
+    )
     position = by_kind.get("position")
     seen = by_kind.get("field")
     messages: list[Message] = []
     sigma_heading = UNKNOWN
-    if seen is not None and field is not None:
-        found = attitude_from_vectors(gravity_B[None], seen[None], field, gravity)
+    if seen is not None and field_E is not None:
+        found = attitude_from_vectors(gravity_B[None], seen[None], field_E, gravity)
         euler = tuple(found.euler[0])
         sigma_heading = 0.2 if found.heading[0] else UNKNOWN
     else:
@@ -100,6 +109,9 @@ def first_state(
                 do="Nothing, if the flight turns: the heading is found when it speeds up.",
             )
         )
+    wind = np.zeros(3)
+    if "V" in by_kind and velocity is not None:
+        wind = _wind(by_kind, velocity, euler)
     height, off = by_kind.get("height"), 0.0
     if height is not None and position is None:  # counted from where it starts
         position = np.array([0.0, 0.0, -float(height[0])])
@@ -110,12 +122,28 @@ def first_state(
         euler=(float(euler[0]), float(euler[1]), float(euler[2])),
         velocity=np.zeros(3) if velocity is None else velocity,
         position=np.zeros(3) if position is None else position,
-        sigma_turn=(0.1, 0.1, sigma_heading),
+        wind=wind,
+        sigma_heading=sigma_heading,
         sigma_velocity=20.0 if velocity is None else 1.0,
         sigma_position=1000.0 if position is None else 10.0,
         sigma_height_bias=5.0 + abs(off),
     )
     return start, tuple(messages)
+
+
+def _wind(seen: Mapping[str, Array | None], velocity: Array, euler: Sequence[float]) -> Array:
+    """Wind that agrees with the first readings; level flight where there are no flow angles."""
+
+    def of(name: str, without: float) -> float:
+        value = seen.get(name)
+        return without if value is None else float(value[0])
+
+    V, alpha, beta = of("V", 0.0), of("alpha", float(euler[1])), of("beta", 0.0)
+    if not V > 0.0:
+        return np.zeros(3)
+    air = V * np.array([np.cos(alpha) * np.cos(beta), np.sin(beta), np.sin(alpha) * np.cos(beta)])
+    R = rotations(quaternion(*euler)[None])[0]
+    return np.asarray(velocity - R.T @ air)
 
 
 def _mean(r: Readings, t0: float) -> Array | None:

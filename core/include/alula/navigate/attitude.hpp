@@ -70,10 +70,10 @@ VectorAttitude<T> attitude_from_vectors(const Vec3<T>& g_B, const Vec3<T>& B_B,
 
 template <class T>
 struct MeasuredAttitude {
-  Vec3<T> euler;   // phi theta psi, rad
-  T gain;          // acceleration gain, 0 to 1
-  bool heading;    // false: psi says nothing, the field is disturbed or not there
-  bool valid;      // false: no gravity to be seen (free fall)
+  Vec3<T> euler;  // phi theta psi, rad
+  T gain;         // acceleration gain, 0 to 1
+  bool heading;   // false: psi says nothing, the field is disturbed or not there
+  bool valid;     // false: no gravity to be seen (free fall)
 };
 
 // Bank and pitch from (3.24), heading from (3.27). A field whose size is off by more than

@@ -13,8 +13,8 @@ namespace alula {
 
 template <class T>
 struct AttitudeNoise {
-  T gyro{T(2e-4)};        // rad/s per root Hz
-  T gyro_walk{T(1e-5)};   // rad/s per root s
+  T gyro{T(2e-4)};       // rad/s per root Hz
+  T gyro_walk{T(1e-5)};  // rad/s per root s
   // Of a measured attitude, phi theta psi, rad, as if white at 50 Hz. It is not: what maneuvers and
   // turbulence add, 3 deg or so, lasts some 10 s; over 500 samples that weighs as much as 1 rad.
   Vec3<T> measured{T(1), T(1), T(1)};
@@ -27,28 +27,29 @@ struct AttitudeNoise {
 template <class T>
 struct AttitudeFilter {
   Quaternion<T> q{T(1), T(0), T(0), T(0)};
-  Vec3<T> bias{};            // rad/s
-  Vec3<T> rate{};            // rad/s, measured less bias, at t
+  Vec3<T> bias{};             // rad/s
+  Vec3<T> rate{};             // rad/s, measured less bias, at t
   ErrorCovariance<T, 6> P{};  // theta, b
-  double t = 0;              // s; double also where T is float: a float of seconds ends at hours
+  double t = 0;               // s; double also where T is float: a float of seconds ends at hours
   double refused_since = -1;
   bool started = false;
   Tally tally{};
 };
 
-// sigma: rad about body x, y, z (an unknown heading: 1.8); sigma_bias: rad/s.
+// tilt, heading: standard deviations, rad (an unknown heading: 1.8); sigma_bias: rad/s.
 template <class T>
-Taken start(AttitudeFilter<T>& f, double t, const Quaternion<T>& q, const Vec3<T>& sigma,
+Taken start(AttitudeFilter<T>& f, double t, const Quaternion<T>& q, T tilt, T heading,
             T sigma_bias) {
   const T norm = norm_squared(q);
-  if (!std::isfinite(t) || !(norm > T(0)) || !std::isfinite(norm) || !finite(sigma))
+  if (!std::isfinite(t) || !(norm > T(0)) || !std::isfinite(norm) || !std::isfinite(tilt + heading))
     return count(f.tally, Taken::kNotFinite);
   const Tally tally = f.tally;
   f = AttitudeFilter<T>{};
   f.tally = tally;
   f.q = normalized(q);
   f.t = t;
-  add_variance(f.P, 0, {sigma.x * sigma.x, sigma.y * sigma.y, sigma.z * sigma.z});
+  const Mat3<T> R_BE = earth_to_body(f.q);
+  add_attitude_variance(f.P, 0, {R_BE.row[0].z, R_BE.row[1].z, R_BE.row[2].z}, tilt, heading);
   const T b = sigma_bias * sigma_bias;
   add_variance(f.P, 3, {b, b, b});
   f.started = true;
@@ -84,12 +85,12 @@ Taken predict(AttitudeFilter<T>& f, const AttitudeNoise<T>& noise, double t, con
   T G[3][R];
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < R; ++j)
-      G[i][j] = A.row[i].x * P[0][j] + A.row[i].y * P[1][j] + A.row[i].z * P[2][j] -
-                dt * P[i + 3][j];
+      G[i][j] =
+          A.row[i].x * P[0][j] + A.row[i].y * P[1][j] + A.row[i].z * P[2][j] - dt * P[i + 3][j];
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j <= i; ++j)
-      P[i][j] = P[j][i] = G[i][0] * A.row[j].x + G[i][1] * A.row[j].y + G[i][2] * A.row[j].z -
-                          dt * G[i][j + 3];
+      P[i][j] = P[j][i] =
+          G[i][0] * A.row[j].x + G[i][1] * A.row[j].y + G[i][2] * A.row[j].z - dt * G[i][j + 3];
     for (int j = 3; j < 6; ++j) P[i][j] = P[j][i] = G[i][j];
   }
   const T n = noise.gyro * noise.gyro * dt, b = noise.gyro_walk * noise.gyro_walk * dt;

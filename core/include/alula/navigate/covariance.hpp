@@ -39,6 +39,18 @@ constexpr void add_variance(ErrorCovariance<T, N>& c, int first, const Vec3<T>& 
   c.P[first + 2][first + 2] += variance.z;
 }
 
+// An attitude that is known within `tilt` and, about the vertical, `heading` (rad). down: the
+// vertical in body axes; first: state of the turn about body x.
+template <class T, int N>
+constexpr void add_attitude_variance(ErrorCovariance<T, N>& c, int first, const Vec3<T>& down,
+                                     T tilt, T heading) {
+  const T d[3] = {down.x, down.y, down.z};
+  const T t = tilt * tilt, more = heading * heading - t;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      c.P[first + i][first + j] += more * d[i] * d[j] + (i == j ? t : T(0));
+}
+
 // Kalman update; `dx` (N) is the correction of the error states. Nothing is touched unless taken:
 // refused where nis exceeds `gate`, or where the innovations' covariance is not positive.
 template <class T, int N, int M, int K>

@@ -71,8 +71,7 @@ template <class T>
 Taken predict(JointFilter<T>& f, const JointNoise<T>& noise, double t, const Vec3<T>& w,
               const Vec3<T>& force) {
   if (!f.started) return count(f.tally, Taken::kUnusable);
-  if (!std::isfinite(t) || !finite(w) || !finite(force))
-    return count(f.tally, Taken::kNotFinite);
+  if (!std::isfinite(t) || !finite(w) || !finite(force)) return count(f.tally, Taken::kNotFinite);
   const T dt = static_cast<T>(t - f.t);
   if (!(dt > T(0))) return count(f.tally, Taken::kBackwards);
   const bool hole = dt > noise.longest_step;
@@ -118,15 +117,12 @@ Taken predict(JointFilter<T>& f, const JointNoise<T>& noise, double t, const Vec
   joint_filter_detail::age(f, noise, dt, keep);
   if (hole) {  // what it did meanwhile is not known; yet airplanes stay more or less upright
     const T v = noise.unknown_acceleration * dt, p = T(0.5) * v * dt, s = noise.unknown_rate * dt;
-    const T tilt = limited(s * s, T(0), T(0.1)), heading = limited(s * s, T(0), T(3.3)) - tilt;
-    const T down[3] = {R_BE.row[0].z, R_BE.row[1].z, R_BE.row[2].z};
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) f.P.P[i][j] += heading * down[i] * down[j];
-    add_variance(f.P, kTurn, {tilt, tilt, tilt});
+    const T tilt = limited(s, T(0), T(0.32)), heading = limited(s, T(0), T(1.8));
+    add_attitude_variance(f.P, kTurn, {R_BE.row[0].z, R_BE.row[1].z, R_BE.row[2].z}, tilt, heading);
     add_variance(f.P, kVelocity, {v * v, v * v, v * v});
     add_variance(f.P, kPosition, {p * p, p * p, p * p});
   }
-  remember(f.history, t, {f.position, f.velocity});
+  remember(f.history, t, antenna_of(f, noise));
   return count(f.tally, hole ? Taken::kGap : Taken::kYes);
 }
 

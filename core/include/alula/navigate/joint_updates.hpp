@@ -65,7 +65,7 @@ Innovation<T, 3, 12> of_the_past(const JointFilter<T>& f, const JointNoise<T>& n
   }
   if (!(age > T(0))) return in;
   const T of_c = position ? T(0.5) * age * age : -age;
-  Vec3<T> f_E = (T(1) / age) * (f.velocity - then.velocity);
+  Vec3<T> f_E = (T(1) / age) * (antenna_of(f, noise).velocity - then.velocity);
   f_E.z -= noise.gravity;
   const Mat3<T> R_BE = earth_to_body(f.q);
   for (int k = 0; k < 3; ++k) {
@@ -90,7 +90,7 @@ Judged<T> satellite(JointFilter<T>& f, const JointNoise<T>& noise, double t_meas
   if (t_measured > f.t + static_cast<double>(noise.longest_step))
     return refused(f, Taken::kBackwards);
   Place3<T> then;
-  if (!recall(f.history, t_measured, f.t, {f.position, f.velocity}, then))
+  if (!recall(f.history, t_measured, f.t, antenna_of(f, noise), then))
     return refused(f, Taken::kTooOld);
   const T late = static_cast<T>(f.t - t_measured);
   Innovation<T, 3, 12> in = of_the_past(f, noise, late, then, position);
@@ -107,7 +107,9 @@ Judged<T> satellite(JointFilter<T>& f, const JointNoise<T>& noise, double t_meas
 // Air data are not linear in an attitude or a velocity that may be any: they wait for the others.
 template <class T>
 bool ready_for_air(const JointFilter<T>& f, T V) {
-  const auto spread = [&f](int i) { return f.P.P[i][i] + f.P.P[i + 1][i + 1] + f.P.P[i + 2][i + 2]; };
+  const auto spread = [&f](int i) {
+    return f.P.P[i][i] + f.P.P[i + 1][i + 1] + f.P.P[i + 2][i + 2];
+  };
   return f.started && spread(kTurn) < T(0.5) && spread(kVelocity) < T(0.25) * V * V;
 }
 
@@ -133,7 +135,7 @@ Innovation<T, 1, 15> of_the_air(const JointFilter<T>& f, const JointNoise<T>& no
 
 }  // namespace joint_filter_detail
 
-// Position (m, NED) as measured at t_measured; sigma per axis.
+// Position (m, NED) of the antenna as measured at t_measured; sigma per axis.
 template <class T>
 Judged<T> update_position(JointFilter<T>& f, const JointNoise<T>& noise, double t_measured,
                           const Vec3<T>& z, const Vec3<T>& sigma) {
@@ -222,8 +224,7 @@ Judged<T> update_alpha(JointFilter<T>& f, const JointNoise<T>& noise, T z, T sig
   if (!std::isfinite(z) || !std::isfinite(sigma)) return refused(f, Taken::kNotFinite);
   const Vec3<T> v = air_velocity_at_sensor(f, noise);
   const T plane = v.x * v.x + v.z * v.z;
-  if (!(plane > noise.least_airspeed * noise.least_airspeed) ||
-      !ready_for_air(f, std::sqrt(plane)))
+  if (!(plane > noise.least_airspeed * noise.least_airspeed) || !ready_for_air(f, std::sqrt(plane)))
     return refused(f, Taken::kUnusable);
   const Vec3<T> g{-v.z / plane, T(0), v.x / plane};
   return take(f, noise, of_the_air(f, noise, g, wrapped(z - std::atan2(v.z, v.x)), sigma), kOfAir);
@@ -236,8 +237,7 @@ Judged<T> update_beta(JointFilter<T>& f, const JointNoise<T>& noise, T z, T sigm
   if (!std::isfinite(z) || !std::isfinite(sigma)) return refused(f, Taken::kNotFinite);
   const Vec3<T> v = air_velocity_at_sensor(f, noise);
   const T plane = v.x * v.x + v.z * v.z;
-  if (!(plane > noise.least_airspeed * noise.least_airspeed) ||
-      !ready_for_air(f, std::sqrt(plane)))
+  if (!(plane > noise.least_airspeed * noise.least_airspeed) || !ready_for_air(f, std::sqrt(plane)))
     return refused(f, Taken::kUnusable);
   const T root = std::sqrt(plane), k = T(1) / ((plane + v.y * v.y) * root);
   const Vec3<T> g{-k * v.x * v.y, k * plane, -k * v.z * v.y};

@@ -22,7 +22,7 @@ struct Pair {
   Vec3<T> force{}, rate{};  // sums since the last measured attitude
   Vec3<T> step_force{};     // and since the last step of the position filter
   int samples = 0, step_samples = 0;
-  T airspeed{0};            // m/s, the last one read; 0: none, ground velocity stands in
+  T airspeed{0};  // m/s, the last one read; 0: none, ground velocity stands in
   double airspeed_at = -1;
 };
 
@@ -66,8 +66,8 @@ Judged<T> update_field(Pair<T>& f, const PairNoise<T>& noise, const Vec3<T>& B_B
   f.force = f.rate = {};
   f.samples = 0;
   const bool fresh = f.airspeed > T(0) && f.attitude.t - f.airspeed_at < 1.0;
-  const Vec3<T> v = fresh ? Vec3<T>{f.airspeed, T(0), T(0)}
-                          : earth_to_body(f.attitude.q) * f.position.velocity;
+  const Vec3<T> v =
+      fresh ? Vec3<T>{f.airspeed, T(0), T(0)} : earth_to_body(f.attitude.q) * f.position.velocity;
   const Vec3<T> g_B = gravity_seen(force, rate, v);
   return update(f.attitude, noise.attitude,
                 measured_attitude(g_B, B_B, noise.field, noise.position.gravity));

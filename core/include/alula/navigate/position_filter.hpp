@@ -16,10 +16,10 @@ struct PositionNoise {
   T accelerometer{T(0.2)};  // m/s2 per root Hz; what a wrong attitude adds counts in
   T accelerometer_walk{T(3e-3)};
   T gravity{T(9.80665)};
-  T longest_step{T(0.1)};           // s; beyond it the sample comes after a hole
-  T unknown_acceleration{T(10)};    // m/s2 that the aircraft may have in a hole
-  T gate3{T(25)}, gate1{T(19.5)};   // one in 100 000 by chance
-  T patience{T(5)};                 // s of refusals after which the filter doubts itself
+  T longest_step{T(0.1)};          // s; beyond it the sample comes after a hole
+  T unknown_acceleration{T(10)};   // m/s2 that the aircraft may have in a hole
+  T gate3{T(25)}, gate1{T(19.5)};  // one in 100 000 by chance
+  T patience{T(5)};                // s of refusals after which the filter doubts itself
 };
 
 template <class T>
@@ -96,8 +96,7 @@ Taken predict(PositionFilter<T>& f, const PositionNoise<T>& noise, double t, con
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < R; ++j) {
       G[i][j] = P[i][j] + dt * P[i + 3][j];
-      G[i + 3][j] =
-          P[i + 3][j] - dt * (C[i][0] * P[6][j] + C[i][1] * P[7][j] + C[i][2] * P[8][j]);
+      G[i + 3][j] = P[i + 3][j] - dt * (C[i][0] * P[6][j] + C[i][1] * P[7][j] + C[i][2] * P[8][j]);
     }
   for (int i = 0; i < 6; ++i) {
     T row[6];
@@ -165,8 +164,9 @@ Judged<T> update_position(PositionFilter<T>& f, const PositionNoise<T>& noise, d
   Place3<T> then;
   const Taken known = position_filter_detail::past(f, noise, t_measured, then);
   if (known != Taken::kYes) return {count(f.tally, known), T(0), {}};
-  const T age = static_cast<T>(f.t - t_measured), e[3] = {z.x - then.position.x,
-      z.y - then.position.y, z.z - then.position.z}, s[3] = {sigma.x, sigma.y, sigma.z};
+  const T age = static_cast<T>(f.t - t_measured),
+          e[3] = {z.x - then.position.x, z.y - then.position.y, z.z - then.position.z},
+          s[3] = {sigma.x, sigma.y, sigma.z};
   Innovation<T, 3, 6> in{{0, 1, 2, 3, 4, 5}};
   for (int i = 0; i < 3; ++i) {
     in.e[i] = e[i];
@@ -199,8 +199,8 @@ Judged<T> update_velocity(PositionFilter<T>& f, const PositionNoise<T>& noise, d
 
 // Height (m) as measured at t_measured.
 template <class T>
-Judged<T> update_height(PositionFilter<T>& f, const PositionNoise<T>& noise, double t_measured,
-                        T z, T sigma) {
+Judged<T> update_height(PositionFilter<T>& f, const PositionNoise<T>& noise, double t_measured, T z,
+                        T sigma) {
   if (!std::isfinite(t_measured) || !std::isfinite(z) || !std::isfinite(sigma))
     return {count(f.tally, Taken::kNotFinite), T(0), {}};
   Place3<T> then;

@@ -10,9 +10,9 @@ namespace alula {
 
 template <class T>
 struct PowerTrainNoise {
-  T jerk{T(2000)};     // rad/s2 per root s: how fast the acceleration changes
-  T decay{T(0.3)};     // s over which an acceleration dies away
-  T sensor{T(5)};      // rad/s, of a reading
+  T jerk{T(2000)};  // rad/s2 per root s: how fast the acceleration changes
+  T decay{T(0.3)};  // s over which an acceleration dies away
+  T sensor{T(5)};   // rad/s, of a reading
   T gate{T(25)};
   T patience{T(0.5)};  // s of refusals after which the filter doubts itself
 };
@@ -20,7 +20,7 @@ struct PowerTrainNoise {
 // Speed and acceleration with their covariance; charge taken from the battery.
 template <class T>
 struct PowerTrain {
-  T omega{0}, acceleration{0};                  // rad/s, rad/s2
+  T omega{0}, acceleration{0};  // rad/s, rad/s2
   T P[2][2] = {{T(1e6), T(0)}, {T(0), T(1e8)}};
   T charge{0};         // A s drawn so far
   T motor_current{0};  // A

@@ -37,8 +37,8 @@ void add_outer(Mat3<T>& m, const Vec3<T>& a, T s) {
 // sigma_turn: rad about the body axes; sigma_velocity: m/s, NED.
 template <class T>
 WindFound<T> wind_from(const Vec3<T>& velocity, const Vec3<T>& sigma_velocity,
-                       const Quaternion<T>& q, const Vec3<T>& sigma_turn,
-                       const AirReading<T>& air, T least_airspeed = T(3)) {
+                       const Quaternion<T>& q, const Vec3<T>& sigma_turn, const AirReading<T>& air,
+                       T least_airspeed = T(3)) {
   WindFound<T> out{{}, {}, false};
   const T sum = air.V + air.alpha + air.beta + norm_squared(q) + air.sigma_V + air.sigma_alpha +
                 air.sigma_beta;
@@ -68,7 +68,7 @@ WindFound<T> wind_from(const Vec3<T>& velocity, const Vec3<T>& sigma_velocity,
 
 template <class T>
 struct AirFound {
-  FlowAngles<T> flow;              // V m/s, alpha and beta rad
+  FlowAngles<T> flow;  // V m/s, alpha and beta rad
   T sigma_V, sigma_alpha, sigma_beta;
   bool valid;  // false where an input is not a number; angles need an airspeed
 };

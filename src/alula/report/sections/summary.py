@@ -62,6 +62,10 @@ def verdict(report: ReportInput) -> tuple[str, str]:
 
 def _without_model(report: ReportInput) -> tuple[str, str]:
     """The verdict of a project that asks for no model, or did not come so far."""
+    if report.navigation:
+        if any(m.code == "sensor_refused" for m in report.messages):
+            return "bad", "A sensor contradicts the others: see the messages"
+        return "good", "The logs are navigated; no model was asked for"
     if report.reconstruction is None or not report.reconstruction.segments:
         return "caution", "No model was identified: this page shows the data only"
     unseen = [c.name for c in report.reconstruction.constants if not c.observable]
