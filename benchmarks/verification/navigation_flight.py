@@ -256,7 +256,8 @@ def navigation_flight(quick: bool) -> tuple[str, bool]:
         f"(largest of a flight {best.worst_euler:.2f}), wind with turbulence "
         f"{', '.join(f'{w:.2f}' for w in best.wind)} m/s ({best.worst_wind:.2f}); NEES of 3, and "
         f"share of times in its {100 * CONFIDENCE:.0f} % bounds: {table(best)}; without alpha and "
-        f"beta, sideslip taken to be near zero: {angles(plain)} deg, wind {', '.join(f'{w:.2f}' for w in plain.wind)} m/s, NEES "
-        f"{table(plain)}; the pair: {angles(other)} deg, NEES {table(other)}"
+        f"beta, sideslip taken to be near zero: {angles(plain)} deg, wind "
+        f"{', '.join(f'{w:.2f}' for w in plain.wind)} m/s, NEES {table(plain)}; "
+        f"the pair: {angles(other)} deg, NEES {table(other)}"
     )
     return got, holds

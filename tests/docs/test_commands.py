@@ -155,6 +155,7 @@ def test_python_page(tmp_path: Path, monkeypatch) -> None:
         "plan",
         "fly",
         "validate",
+        "navigate",
         "export",
         "trim",
         "linearize",

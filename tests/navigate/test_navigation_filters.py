@@ -56,7 +56,7 @@ def test_straight_flight_without_vanes_does_not_know_the_wind_across() -> None:
     more = navigate_joint(
         motion.inertial, [*plain, assumed_sideslip(motion.inertial)], SETTINGS, every=400
     )
-    assert more.se("wind")[-1, 1] < 1.5
+    assert more.se("wind")[-1, 1] < 2.0  # 0.12 rad of 30 m/s over the root of 20 readings, and more
     assert np.abs(more.wind[-1] - WIND)[:2].max() < 3.0 * more.se("wind")[-1].max()
 
 

@@ -22,7 +22,6 @@ from alula.navigate import (
 from alula.navigate.field import world_magnetic_model
 from navigate.recordings import FIELD, G, turning
 
-
 AIRCRAFT = Path(__file__).parents[2] / "aircraft"
 
 

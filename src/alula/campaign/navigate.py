@@ -27,6 +27,8 @@ from alula.report import ReportInput
 
 ROWS = 20_000  # of the result, at most, for each log
 _ARMS = ("V", "v_north")  # whose sensors' positions matter
+CONTRADICTIONS = ("sensor_refused", "implausible_wind")
+MOST_WIND = 0.8  # of the airspeed: an airplane that hardly makes way over ground
 LEAST_TAKEN = 0.5  # of a sensor's readings; below it sensor and filter contradict each other
 
 
@@ -45,7 +47,7 @@ class NavigationJob:
     @property
     def failed(self) -> bool:
         """Whether a sensor contradicts the others."""
-        return any(m.code == "sensor_refused" for m in self.messages)
+        return any(m.code in CONTRADICTIONS for m in self.messages)
 
     def all_messages(self) -> tuple[Message, ...]:
         """The messages of every stage, each once."""
@@ -119,7 +121,7 @@ def _navigate(
                 "assumed_sideslip",
                 where=f"log {flight.id}",
                 expected="a sideslip sensor",
-                found="none; sideslip is taken to be zero within 4 deg",
+                found="none; sideslip is taken to be zero within 7 deg",
                 do="Nothing: without it the wind across is not known before the flight turns.",
             )
         )
@@ -181,6 +183,17 @@ def _refusals(log: str, found: Navigation) -> list[Message]:
                     do="Check its sign, unit, delay_s and stated sigma.",
                 )
             )
+    wind, speed = float(np.linalg.norm(found.steady[-1])), float(np.median(found.air()[:, 0]))
+    if wind > MOST_WIND * speed and speed > 10.0:
+        out.append(
+            warn(
+                "implausible_wind",
+                where=f"log {log}",
+                expected="a wind well below the airspeed",
+                found=f"{wind:.3g} m/s at {speed:.3g} m/s of airspeed",
+                do="Check the signs and units of v_north, v_east, psi and V.",
+            )
+        )
     for what in ("not_finite", "backwards", "gap"):
         if found.inertial.get(what):
             out.append(

@@ -73,7 +73,8 @@ def navigate_joint(
         x, y, z = settings.field
         noise.field = (MICRO * x, MICRO * y, MICRO * z)
     sigma = np.array(
-        [start.sigma_tilt, start.sigma_heading, start.sigma_velocity, start.sigma_position, start.sigma_gyro_bias,
+        [start.sigma_tilt, start.sigma_heading, start.sigma_velocity, start.sigma_position,
+         start.sigma_gyro_bias,
          start.sigma_force_bias, start.sigma_wind, start.sigma_height_bias]
     )  # fmt: skip
     found = core.navigate_joint(

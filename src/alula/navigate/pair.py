@@ -66,11 +66,13 @@ def navigate_pair(
     for name in ("accelerometer", "accelerometer_walk", "gravity"):
         setattr(position, name, getattr(settings, name))
     sigma = np.array(
-        [start.sigma_tilt, start.sigma_heading, start.sigma_velocity, start.sigma_position, start.sigma_gyro_bias,
+        [start.sigma_tilt, start.sigma_heading, start.sigma_velocity, start.sigma_position,
+         start.sigma_gyro_bias,
          start.sigma_force_bias]
     )  # fmt: skip
     found = core.navigate_pair(
-        attitude, position, MICRO * np.array(settings.field), settings.steps, start.state()[:10], sigma,
+        attitude, position, MICRO * np.array(settings.field), settings.steps, start.state()[:10],
+        sigma,
         _before(start.t, inertial), _row(inertial.t), _row(inertial.rate), _row(inertial.force),
         rows, every,
     )  # fmt: skip

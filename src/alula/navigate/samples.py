@@ -92,11 +92,12 @@ def merged(readings: Sequence[Readings]) -> tuple[Array, NDArray[np.intp]]:
     return np.ascontiguousarray(rows[order]), whose[order]
 
 
-def assumed_sideslip(inertial: Inertial, sigma: float = 0.07, rate: float = 1.0) -> Readings:
+def assumed_sideslip(inertial: Inertial, sigma: float = 0.12, rate: float = 1.0) -> Readings:
     """Sideslip near zero, as readings of what is not measured: an airplane flies straight ahead.
 
     Without it an airspeed alone leaves the wind across unknown until the flight has turned. sigma:
-    rad, of the true sideslip about zero; rate: Hz, slow enough for its gusts to be new each time.
+    rad, of the true sideslip about zero; wide, because what a turn adds
+    lasts; rate: Hz.
     """
     t = inertial.t[np.isfinite(inertial.t)]
     stamps = np.arange(float(t[0]), float(t[-1]), 1.0 / rate)

@@ -15,6 +15,7 @@ from alula.navigate.samples import Inertial, Readings
 
 SPAN = 1.0  # s of samples that are looked at
 UNKNOWN = 1.8  # rad: of a heading that may be any, pi over the root of 3
+TILT = 0.15  # rad: what turbulence leaves of a second's mean gravity
 DRIFT = 0.5  # rad: of a heading taken from the course over ground
 
 
@@ -86,7 +87,12 @@ def first_state(
     if seen is not None and field_E is not None:
         found = attitude_from_vectors(gravity_B[None], seen[None], field_E, gravity)
         euler = tuple(found.euler[0])
-        sigma_heading = 0.2 if found.heading[0] else UNKNOWN
+        if found.heading[0]:
+            euler = tuple(_along_field(gravity_B, seen, field_E))
+        # the dip turns an error of bank into one of heading
+        dip = abs(float(field_E[2])) / max(float(np.hypot(field_E[0], field_E[1])), 1e-12)
+        sigma_heading = min(float(np.hypot(0.1, TILT * dip)), UNKNOWN)
+        sigma_heading = sigma_heading if found.heading[0] else UNKNOWN
     else:
         euler = (
             float(np.arctan2(gravity_B[1], gravity_B[2])),
@@ -123,12 +129,29 @@ def first_state(
         velocity=np.zeros(3) if velocity is None else velocity,
         position=np.zeros(3) if position is None else position,
         wind=wind,
+        sigma_tilt=TILT,
         sigma_heading=sigma_heading,
         sigma_velocity=20.0 if velocity is None else 1.0,
         sigma_position=1000.0 if position is None else 10.0,
         sigma_height_bias=5.0 + abs(off),
     )
     return start, tuple(messages)
+
+
+def _along_field(gravity_B: Array, field_B: Array, field_E: Array) -> Array:
+    """phi theta psi (3,): the field exactly as seen, gravity for the turn about it alone. What is
+    wrong with gravity then stays where the magnetometer says nothing.
+    """
+
+    def base(field: Array, gravity: Array) -> Array:
+        first = field / np.linalg.norm(field)
+        second = np.cross(first, gravity)
+        second = second / np.linalg.norm(second)
+        return np.column_stack([first, second, np.cross(first, second)])
+
+    R = base(field_B, gravity_B) @ base(field_E, np.array([0.0, 0.0, 1.0])).T
+    theta = np.arctan2(-R[0, 2], np.hypot(R[0, 0], R[0, 1]))
+    return np.array([np.arctan2(R[1, 2], R[2, 2]), theta, np.arctan2(R[0, 1], R[0, 0])])
 
 
 def _wind(seen: Mapping[str, Array | None], velocity: Array, euler: Sequence[float]) -> Array:
@@ -143,7 +166,8 @@ def _wind(seen: Mapping[str, Array | None], velocity: Array, euler: Sequence[flo
         return np.zeros(3)
     air = V * np.array([np.cos(alpha) * np.cos(beta), np.sin(beta), np.sin(alpha) * np.cos(beta)])
     R = rotations(quaternion(*euler)[None])[0]
-    return np.asarray(velocity - R.T @ air)
+    # up and down the air stands nearly still; a first pitch is known less well than that
+    return np.asarray((velocity - R.T @ air) * [1.0, 1.0, 0.0])
 
 
 def _mean(r: Readings, t0: float) -> Array | None:

@@ -113,6 +113,13 @@ bool ready_for_air(const JointFilter<T>& f, T V) {
   return f.started && spread(kTurn) < T(0.5) && spread(kVelocity) < T(0.25) * V * V;
 }
 
+// Share of a vector that the second order of the turn makes uncertain: without it, a filter that is
+// still far off takes the curvature of its readings for knowledge.
+template <class T>
+T curvature(const JointFilter<T>& f) {
+  return T(0.5) * (f.P.P[0][0] + f.P.P[1][1] + f.P.P[2][2]);
+}
+
 // A scalar of the air velocity v (body axes, at its sensor) with gradient g.
 template <class T>
 Innovation<T, 1, 15> of_the_air(const JointFilter<T>& f, const JointNoise<T>& noise,
@@ -129,7 +136,8 @@ Innovation<T, 1, 15> of_the_air(const JointFilter<T>& f, const JointNoise<T>& no
     in.H[0][3 * k + 2] = part[k].z;
   }
   in.e[0] = e;
-  in.R[0][0] = sigma * sigma;
+  const T bent = curvature(f);
+  in.R[0][0] = sigma * sigma + bent * bent * dot(v, v) * dot(g, g);
   return in;
 }
 
@@ -201,7 +209,8 @@ Judged<T> update_field(JointFilter<T>& f, const JointNoise<T>& noise, const Vec3
   in.e[0] = e.x;
   in.e[1] = e.y;
   in.e[2] = e.z;
-  for (int i = 0; i < 3; ++i) in.R[i][i] = sigma * sigma;
+  const T bent = curvature(f);
+  for (int i = 0; i < 3; ++i) in.R[i][i] = sigma * sigma + bent * bent * dot(B, B);
   return take(f, noise, in, kOfField);
 }
 
