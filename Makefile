@@ -5,7 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.alula
 CPP := $(shell find core bindings -name '*.hpp' -o -name '*.cpp')
-CORE := $(shell find core/include bindings -name '*.hpp' -o -name '*.cpp') CMakeLists.txt pyproject.toml
+CORE := $(shell find core/include core/host bindings -name '*.hpp' -o -name '*.cpp') CMakeLists.txt pyproject.toml
 
 .PHONY: build demo test bench verify lint core-test stubs format clean
 build: $(STAMP)
@@ -30,7 +30,7 @@ demo: $(STAMP)
 	@$(BIN)/python examples/demo/demo.py
 
 test: $(STAMP)
-	$(BIN)/python -m pytest -m "not slow"
+	$(BIN)/python -m pytest -m "not slow" --numprocesses auto --maxprocesses 8 --dist loadfile
 
 # The peer that the filters are measured against; the other peers are optional.
 bench: $(STAMP)

@@ -1,8 +1,8 @@
-"""Speed of the path filters against numba in the same run: `make bench`.
+"""Speed of path filters, output error, recursive least squares and simulator: `make bench`.
 
-Prints best and median of the rounds, writes build/bench.json. The peers take turns within every
-round, so that a slow spell of the machine hits all of them; a ratio counts only after the final
-state agrees with the NumPy reference to 1e-6.
+Prints, and writes build/bench.json. The peers take turns within every round, so that a slow spell
+of the machine hits all of them; a ratio counts only where the results agree (filters: the final
+state with the NumPy reference to 1e-6).
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import statistics
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -124,31 +125,81 @@ def filter_rows(rounds: int = ROUNDS) -> list[dict[str, Any]]:
     return rows
 
 
+def output_error_rows(rounds: int = ROUNDS) -> list[dict[str, Any]]:
+    """The baseline's longitudinal case against its numba program."""
+    from verification import output_error_speed
+
+    return [output_error_speed.bench_row(rounds)]
+
+
+def recursive_rows(rounds: int = ROUNDS) -> list[dict[str, Any]]:
+    """Recursive least squares, seconds a sample; it has no peer."""
+    from verification import rls_speed
+
+    best = rls_speed.measure(quick=rounds < ROUNDS)
+    without = {"peer": None, "peer_s": None, "ratio": None, "allocations": None}
+    return [{"name": f"rls, {kind}", "ours_s": s, **without} for kind, s in best.items()]
+
+
+def simulation_rows(rounds: int = ROUNDS) -> list[dict[str, Any]]:
+    """The simulator against JSBSim."""
+    from verification import simulation_speed
+
+    return simulation_speed.bench_rows(rounds)
+
+
+def lattice_rows(rounds: int = ROUNDS) -> list[dict[str, Any]]:
+    """The vortex lattice beside the factorization of its full matrix."""
+    from verification import lattice_speed
+
+    return [lattice_speed.bench_row(rounds)]
+
+
+SUBJECTS: dict[str, Callable[[int], list[dict[str, Any]]]] = {
+    "path filters": filter_rows,
+    "output error": output_error_rows,
+    "recursive least squares": recursive_rows,
+    "simulator": simulation_rows,
+    "vortex lattice": lattice_rows,
+}
+NEED_BASELINES = ("path filters", "output error")
+
+
+def show(rows: list[dict[str, Any]]) -> None:
+    """One line a row; '-' where there is no peer or nothing was counted."""
+
+    def word(value: Any, form: str) -> str:
+        return "-" if value is None else format(value, form)
+
+    print(
+        f"\n{'ours':36s} {'s':>10s} {'peer':20s} {'ratio':>7s} {'medians':>8s} {'allocations':>12s}"
+    )
+    for row in rows:
+        print(
+            f"{row['name']:36s} {row['ours_s']:10.3g} {word(row['peer'], 's'):20s} "
+            f"{word(row['ratio'], '.2f'):>7s} {word(row.get('ratio_median'), '.2f'):>8s} "
+            f"{word(row['allocations'], 'd'):>12s}"
+        )
+
+
 def main() -> int:
     """Run, print, write build/bench.json."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--rounds", type=int, default=ROUNDS)
     rounds = parser.parse_args().rounds
     rows: list[dict[str, Any]] = []
-    if not cases.available():
-        print(
-            f"no rows 'path filter against numba': the peers are not in {cases.BASELINES} "
-            "(set ALULA_BASELINES to the folder that holds path_reconstruction.py)"
-        )
-    else:
+    for subject, measure in SUBJECTS.items():
+        if subject in NEED_BASELINES and not cases.available():
+            print(
+                f"no rows '{subject}': the peers are not in {cases.BASELINES} "
+                "(set ALULA_BASELINES to the folder that holds path_reconstruction.py)"
+            )
+            continue
         try:
-            rows = filter_rows(rounds)
+            rows += measure(rounds)
         except ModuleNotFoundError as e:
-            print(
-                f"no rows 'path filter against numba': {e.name} is missing (pip install {e.name})"
-            )
-    if rows:
-        print(f"\n{'ours':12s} {'peer':12s} {'ratio':>7s} {'of medians':>11s} {'allocations':>12s}")
-        for row in rows:
-            print(
-                f"{row['name']:12s} {row['peer']:12s} {row['ratio']:7.2f} "
-                f"{row['ratio_median']:11.2f} {row['allocations']!s:>12s}"
-            )
+            print(f"no rows '{subject}': {e.name} is missing (pip install {e.name})")
+    show(rows)
     BUILD.mkdir(exist_ok=True)
     (BUILD / "bench.json").write_text(json.dumps(rows, indent=1) + "\n")
     return 0

@@ -21,7 +21,7 @@ void build(AeroTable* made, Matrix steps, Matrix terms, const std::vector<TableA
   if (steps.shape(0) > alula::kMaxSteps || terms.shape(0) > alula::kMaxTerms)
     throw nb::value_error("the model has more steps or terms than the table holds");
   if (tables.size() > 255) throw nb::value_error("at most 255 lookup tables");
-  auto lookups = std::make_shared<Lookups>();
+  auto lookups = std::make_shared<TableStore>();
   for (const TableArgument& table : tables) lookups->add(table);
   new (made) AeroTable{{}, lookups};
   alula::TermTable* self = &made->table;
@@ -39,6 +39,7 @@ void build(AeroTable* made, Matrix steps, Matrix terms, const std::vector<TableA
     self->terms[k] = {index_from(terms(k, 0)), index_from(terms(k, 1))};
   if (!alula::well_formed(*self, static_cast<int>(tables.size())))
     throw nb::value_error("a step or term refers to a slot that does not exist before it");
+  share_axes(*self, lookups->views);
 }
 
 void evaluate(const AeroTable& bound, Vector values, Matrix variables, MatrixOut out) {
@@ -46,7 +47,7 @@ void evaluate(const AeroTable& bound, Vector values, Matrix variables, MatrixOut
   if (values.shape(0) != self.term_count) throw nb::value_error("values: one per term expected");
   if (variables.shape(1) != alula::kVariables || out.shape(1) != alula::kCoefficients ||
       out.shape(0) != variables.shape(0))
-    throw nb::value_error("expected variables (n, 13) and out (n, 6)");
+    throw nb::value_error("expected variables (n, 14) and out (n, 6)");
   double slots[alula::kMaxSlots];
   for (std::size_t i = 0; i < variables.shape(0); ++i) {
     for (std::size_t j = 0; j < alula::kVariables; ++j) slots[j] = variables(i, j);
@@ -72,8 +73,8 @@ void bind_aero(nb::module_& m) {
       .def("__init__", &build, nb::arg("steps"), nb::arg("terms"),
            nb::arg("tables") = std::vector<TableArgument>())
       .def("evaluate", &evaluate, nb::arg("values"), nb::arg("variables"), nb::arg("out"),
-           "Coefficients (n, 6) for variables (n, 13): 1 V alpha beta phat qhat rhat de da dr df\n"
-           "dt mach; values: one per term.")
+           "Coefficients (n, 6) for variables (n, 14): 1 V alpha beta phat qhat rhat de da dr df\n"
+           "dt mach wash; values: one per term.")
       .def_prop_ro("term_count", [](const AeroTable& t) { return int{t.table.term_count}; })
       .def_prop_ro("step_count", [](const AeroTable& t) { return int{t.table.step_count}; })
       .def_prop_ro("table_count", [](const AeroTable& t) { return t.lookups->views.size(); });

@@ -5,8 +5,8 @@
 
 struct Aircraft {
   alula::AircraftModel<double> model;
-  std::shared_ptr<Lookups> lookups;  // of the aerodynamic model
-  std::shared_ptr<Lookups> engines = std::make_shared<Lookups>();
+  std::shared_ptr<TableStore> lookups;  // of the aerodynamic model
+  std::shared_ptr<TableStore> engines = std::make_shared<TableStore>();
 
   // After every change of what has states.
   void lay_out() {

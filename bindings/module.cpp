@@ -14,4 +14,7 @@ NB_MODULE(ALULA_MODULE, m) {
   bind_output_error(m);
   bind_navigate(m);
   bind_navigate_tools(m);
+  bind_vortex_lattice(m);
+  bind_propellers(m);
+  bind_strip(m);
 }

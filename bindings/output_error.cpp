@@ -148,19 +148,24 @@ void check(const Maneuver& self, Vector values, Vector initial, Vector bias) {
 std::tuple<int, Numbers, Numbers, Numbers, Counts> sums(const Maneuver& self, Vector values,
                                                         Vector initial, Vector bias) {
   check(self, values, initial, bias);
-  const int ny = self.m.outputs, k = self.m.columns, stride = alula::stride_of(k);
-  Array<double> information({ny, k, stride}), gradient({ny, stride}), squares({ny});
-  Array<std::int64_t> counts({ny});
+  const int ny = self.m.outputs, k = self.m.columns, rows = alula::rows_of(ny);
+  std::vector<double> products(static_cast<std::size_t>(k * k * rows)),
+      slopes(static_cast<std::size_t>(k * rows));
   alula::OutputErrorSums s;
-  s.information = information.data();
-  s.gradient = gradient.data();
+  s.information = products.data();
+  s.gradient = slopes.data();
   const int flown = self.fly(values.data(), initial.data(), bias.data(), s);
+  Array<double> information({ny, k, k}), gradient({ny, k}), squares({ny});
+  Array<std::int64_t> counts({ny});
   for (int o = 0; o < ny; ++o) {
     squares.data()[o] = s.squares[o];
     counts.data()[o] = s.counts[o];
-    double* full = information.data() + static_cast<long>(o) * k * stride;
-    for (int i = 0; i < k; ++i)
-      for (int j = 0; j < i; ++j) full[i * stride + j] = full[j * stride + i];
+    double* full = information.data() + o * k * k;
+    for (int i = 0; i < k; ++i) {
+      gradient.data()[o * k + i] = s.gradient[i * rows + o];
+      for (int j = i; j < k; ++j)
+        full[i * k + j] = full[j * k + i] = s.information[(i * k + j) * rows + o];
+    }
   }
   return {flown, information.numpy(), gradient.numpy(), squares.numpy(), counts.numpy()};
 }
@@ -197,8 +202,8 @@ void bind_output_error(nb::module_& m) {
            "Which column of the parameters each term, initial variable (8) and output's bias is;\n"
            "-1: fixed. A term's slope by its column is its weight.")
       .def("sums", &sums, nb::arg("values"), nb::arg("initial"), nb::arg("bias"),
-           "Samples flown (fewer than all: diverged), and by output: information (k, stride),\n"
-           "gradient (stride), squared residuals, samples.")
+           "Samples flown (fewer than all: diverged), and by output: information (k, k),\n"
+           "gradient (k,), squared residuals, samples.")
       .def("flight", &flight, nb::arg("values"), nb::arg("initial"), nb::arg("bias"),
            nb::arg("sensitivity") = true,
            "Samples flown, outputs (n, outputs), their slopes (n, outputs, k), or (0, ...).")

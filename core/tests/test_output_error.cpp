@@ -175,11 +175,11 @@ TEST(OutputError, SumsAreThoseOfTheSlopesAndSkipWhatIsMissing) {
   c.m.table = &c.table;
   c.measured[3] = c.measured[7 * 9 + 1] = std::nan("");
   const auto& m = c.m;
-  const int k = m.columns, stride = alula::stride_of(k);
+  const int k = m.columns, rows = alula::rows_of(m.outputs);
   std::vector<double> J(static_cast<std::size_t>(m.samples * m.outputs * k)),
       y(static_cast<std::size_t>(m.samples * m.outputs)),
-      information(static_cast<std::size_t>(m.outputs * k * stride)),
-      gradient(static_cast<std::size_t>(m.outputs * stride));
+      information(static_cast<std::size_t>(k * k * rows)),
+      gradient(static_cast<std::size_t>(k * rows));
   alula::OutputErrorSums sums;
   sums.information = information.data();
   sums.gradient = gradient.data();
@@ -200,9 +200,8 @@ TEST(OutputError, SumsAreThoseOfTheSlopesAndSkipWhatIsMissing) {
     }
     EXPECT_EQ(sums.counts[o], count);
     EXPECT_NEAR(sums.squares[o], squares, 1e-12 * squares);
-    EXPECT_NEAR(gradient[static_cast<std::size_t>(o * stride + 1)], slope,
-                1e-9 * (1 + std::abs(slope)));
-    EXPECT_NEAR(information[static_cast<std::size_t>((o * k + 1) * stride + 2)], element,
+    EXPECT_NEAR(gradient[static_cast<std::size_t>(rows + o)], slope, 1e-9 * (1 + std::abs(slope)));
+    EXPECT_NEAR(information[static_cast<std::size_t>((k + 2) * rows + o)], element,
                 1e-9 * (1 + std::abs(element)));
   }
 }

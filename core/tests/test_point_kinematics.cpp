@@ -2,7 +2,7 @@
 // against central differences for every quantity, lever arm, wind and scale error.
 #include <gtest/gtest.h>
 
-#include <alula/filters/path_model.hpp>
+#include <alula/filters/path_jacobians.hpp>
 #include <cmath>
 #include <functional>
 #include <random>

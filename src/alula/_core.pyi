@@ -124,8 +124,8 @@ class TermTable:
 
     def evaluate(self, values: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], variables: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], out: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None:
         """
-        Coefficients (n, 6) for variables (n, 13): 1 V alpha beta phat qhat rhat de da dr df
-        dt mach; values: one per term.
+        Coefficients (n, 6) for variables (n, 14): 1 V alpha beta phat qhat rhat de da dr df
+        dt mach wash; values: one per term.
         """
 
     @property
@@ -308,8 +308,8 @@ class ManeuverFit:
 
     def sums(self, values: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], initial: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], bias: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> tuple[int, NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.int64]]:
         """
-        Samples flown (fewer than all: diverged), and by output: information (k, stride),
-        gradient (stride), squared residuals, samples.
+        Samples flown (fewer than all: diverged), and by output: information (k, k),
+        gradient (k,), squared residuals, samples.
         """
 
     def flight(self, values: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], initial: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], bias: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], sensitivity: bool = True) -> tuple[int, NDArray[numpy.float64], NDArray[numpy.float64]]:
@@ -539,3 +539,91 @@ def power_train(motor: Annotated[NDArray[numpy.float64], dict(shape=(None,), ord
     acceleration, standard deviation of the speed, motor current, battery current, charge
     drawn, voltage, share left, what became of the sample.
     """
+
+LATTICE_PANELS: int = 15000
+
+def vortex_lattice(vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], row_start: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], row_surface: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], trailing: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], row_trailing: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], control: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], middle: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], normal: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], normal_rate: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], parity: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], mirror: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], right: int, center: int, strip: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], strip_first: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], strip_last: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], strip_middle: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], alpha: float, beta: float, mach: float, rate: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], point: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], reference: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], core: float, turning: bool) -> dict[str, Any]:
+    """
+    Loads of a lattice and their derivatives to alpha, beta, phat, qhat, rhat and controls, body axes; see core/host/include/alula/host/vortex_lattice.hpp.
+    """
+
+def lattice_factor_time(n: int) -> float:
+    """
+    Processor time (s) of the factorization alone of a full matrix of order n.
+    """
+
+MAX_BLADE_STATIONS: int = 64
+
+class BladeShape:
+    """Blades by stations; lengths over the tip's radius."""
+
+    def __init__(self, count: int, radius: float, hub: float, helix: float, r: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], chord: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], pitch: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> None:
+        """
+        count: of blades; radius: m; hub: where they begin, over the radius; helix: geometric
+        pitch over the radius, 0: the stations' pitch (rad) counts; r, chord over the radius.
+        """
+
+    @property
+    def helix(self) -> float: ...
+
+def blade_integrals(blade: BladeShape, alpha_max: float, J1: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], out: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None:
+    """
+    Integrals of one blade at advance ratios of the disk: out (n, 18), the loads F_x, F_yV,
+    F_yQ, M_x, M_yV, M_yQ, each with its parts of stalled lift, attached lift and drag.
+    """
+
+def momentum_disk(blade: BladeShape, c_l_alpha: float, alpha_max: float, c_d_alpha: float, J: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], out: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None:
+    """
+    The momentum disk at advance ratios J = V/(n D): out (n, 10): J0, J1, w'/w, the six hub
+    coefficients, the regime (0 inside, 1 standing, 2 reverse, 3 windmill, 4 unsolved).
+    """
+
+def windmill_J(blade: BladeShape, c_l_alpha: float, alpha_max: float, c_d_alpha: float) -> float:
+    """
+    Advance ratio behind which the air drives the shaft; 0 without a solution.
+    """
+
+class MomentumTable:
+    """The momentum disk tabulated for flight."""
+
+    def __init__(self, blade: BladeShape, c_l_alpha: float, alpha_max: float, c_d_alpha: float, sense: float) -> None: ...
+
+    @property
+    def last(self) -> float:
+        """J at the windmill"""
+
+    def loads(self, omega: float, v: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], w: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], density: float) -> tuple[float, float, float, float, float, float, float, int]:
+        """
+        Force (3), moment (3), shaft torque and regime at the hub; see hub_loads.
+        """
+
+def blade_element_loads(blade: BladeShape, polars: Sequence[tuple[Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]]], axial_speed: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], omega: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], density: float, viscosity: float, sound: float, tip_loss: bool, hub_loss: bool, swirl: bool, at_stations: bool, out: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None:
+    """
+    Thrust N, shaft torque N m and regime (as momentum_disk) by blade elements: out (n, 3).
+    """
+
+def slipstream(axial_speed: float, thrust: float, torque: float, density: float, radius: float, sense: float) -> tuple[float, float, float, float, float, bool]:
+    """
+    Speeds through the disk and far behind it (m/s), turning there (rad/s, along the thrust),
+    radius far behind (m), whether the model holds.
+    """
+
+class StripAircraft:
+    """
+    Lifting surfaces by strips: see aero/strip_theory.hpp.
+    surfaces (m, 7): first strip, count, k, 1/(pi e A), k c_l_alpha, downwash
+    gradient, 1 for a wing. strips (n, 19): point, chord axis, normal, length,
+    area, half width, c_l_delta, c_m_delta, c_l_alpha, gains of de da dr df.
+    sections: per surface (3, n), c_l c_d c_m over -pi to pi.
+    """
+
+    def __init__(self, reference: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], CD_body: float, center: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], hub: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], incidence: float, downwash_by_angle: bool, surfaces: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], strips: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], sections: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]]) -> None: ...
+
+    def evaluate(self, flows: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], out: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], stability_axes: bool) -> None:
+        """
+        Coefficients (n, 6) for flows (n, 12): alpha beta phat qhat rhat de da dr df, and of
+        the slipstream (U_i - u_0)/V, Omega_i/V (1/m), R_i (m).
+        """
+
+    @property
+    def strip_count(self) -> int: ...

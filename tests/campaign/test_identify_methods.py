@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 from alula.base.messages import BadInput
+from alula.campaign.identify_task import IdentifyTask
 from alula.campaign.measured import sensor_readings
-from alula.campaign.methods import IDENTIFIERS, IdentifyTask, identify_by
+from alula.campaign.methods import IDENTIFIERS, identify_by
 from alula.flight import Channel, Flight, Maneuver, Motion
 from alula.identify import CoefficientData, Reference
 from alula.reconstruct import Segment, SensorFit

@@ -11,7 +11,7 @@ from cli.command import alula
 
 COMMANDS = (
     "new", "check", "identify", "compare", "plan", "fly", "validate", "export", "trim", "linearize",
-    "modes", "schema",
+    "modes", "propeller", "schema",
 )  # fmt: skip
 HEAVY = ("numpy", "pandas", "scipy", "matplotlib", "pyarrow", "h5py", "alula._core", "alula.core")
 PROBE = """

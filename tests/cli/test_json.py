@@ -116,10 +116,18 @@ class Parted(Strict):
     held_out: list[str]
 
 
+class Lengths(Strict):
+    S: float = Field(gt=0.0)
+    b: float = Field(gt=0.0)
+    c: float = Field(gt=0.0)
+
+
 class Identified(Strict):
     method: str
     status: str
     uncertainty: str = Field(min_length=1)
+    reference: Lengths
+    reference_point: list[float] = Field(min_length=3, max_length=3)
     formulas: dict[str, str]
     maneuvers: Parted
     parameters: list[Parameter]

@@ -87,12 +87,23 @@ class Flown(Strict):
     channels: dict[str, Channel]
 
 
+class Repeated(Strict):
+    name: str
+    truth: float
+    mean: float
+    scatter: float = Field(gt=0.0)
+    stated: float = Field(gt=0.0)
+    inside: float = Field(ge=0.0, le=1.0)
+    draws: int
+
+
 class Validated(Strict):
     model: Model
     regulation: str
     status: str
     evidence: list[Row]
     maneuvers: list[Flown]
+    reidentified: list[Repeated]
 
 
 def project(demo: Path, folder: Path, held_out: bool = True) -> SmallProject:
@@ -255,3 +266,17 @@ def test_bad_input_writes_nothing(whole: SmallProject, tmp_path: Path) -> None:
 def test_same_seed_same_result(whole: SmallProject, held: Ran) -> None:
     again = alula("validate", whole.path, "--json", "-", "--seed", 5)
     assert timeless(again.envelope) == timeless(held.envelope)
+
+
+def test_flights_of_the_model_are_identified_again(whole: SmallProject, tmp_path: Path) -> None:
+    report = tmp_path / "report.html"
+    ran = alula(
+        "validate", whole.path, "--reidentify", 10, "--draws", 0, "--json", "-", "--report", report
+    )
+    found = Validated.model_validate(checked(ran, "validation", "ok").result).reidentified
+    assert {r.name for r in found} >= {"CL_alpha", "Cm_alpha", "Cm_q", "Cm_de"}
+    assert {r.draws for r in found} == {10}
+    assert "Identified again" in report.read_text()
+    assert_refused(
+        alula("validate", whole.path, "--reidentify", 3, "--json", "-"), "bad_option", "10"
+    )

@@ -156,6 +156,7 @@ def test_python_page(tmp_path: Path, monkeypatch) -> None:
         "fly",
         "validate",
         "navigate",
+        "calibrate",
         "export",
         "trim",
         "linearize",

@@ -7,7 +7,7 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 
 from alula.base.messages import BadInput
 from alula.export.daveml import compare_daveml, export_daveml
@@ -100,9 +100,19 @@ def test_elements_are_in_the_standards_order() -> None:
 @given(models())
 @settings(max_examples=25, deadline=None)
 def test_any_model_comes_back_to_the_bit(model: AeroModel) -> None:
+    assume("wash" not in " ".join(model.formulas.values()))  # refused: the next test
     # compare_daveml raises where a value differs by a bit or a coefficient by 1e-12
     difference = compare_daveml(model, daveml_text(model, author="a", date="2026-01-02"))
     assert set(difference) == set(model.coefficients)
+
+
+def test_propwash_is_refused() -> None:
+    model = aero_model(
+        "washed", {"Cl": "1 + beta*wash"}, {"Cl_0": 0.1, "Cl_beta_wash": 0.2}, Reference(1, 1, 1)
+    )
+    with pytest.raises(BadInput) as caught:
+        daveml_text(model, author="a", date="2026-01-02")
+    assert caught.value.messages[0].code == "wash_in_model"
 
 
 def test_f16_out_and_in_again(tmp_path: Path) -> None:

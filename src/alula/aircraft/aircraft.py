@@ -32,6 +32,17 @@ class Envelope:
 
 
 @dataclass(frozen=True)
+class Uncertainty:
+    """Standard deviations: mass, inertia, the propellers' inertia relative; cg, hub (3,) m."""
+
+    mass: float
+    cg: Array
+    inertia: float
+    hub: Array
+    propeller_inertia: float
+
+
+@dataclass(frozen=True)
 class Aircraft:
     """Reference geometry, mass, sensors, engines, control signs and limits of one aircraft.
 
@@ -41,6 +52,7 @@ class Aircraft:
     assumed: keys of the file whose value was not measured. All positions are in body axes from
     the datum. actuators: by control, for those that have one. aero: absolute path of the default
     aerodynamic model's file, None where the aircraft file names none; not opened here.
+    uncertainty: of what was estimated, None where the file states none.
     geometry: the shape, None where the file has no [geometry].
     """
 
@@ -63,6 +75,7 @@ class Aircraft:
     actuators: Mapping[str, Actuator] = field(default_factory=dict)
     aero: str | None = None
     geometry: Geometry | None = None
+    uncertainty: Uncertainty | None = None
 
     def mass_properties(self, fuel_used: Array) -> MassProperties:
         """Mass (n,), CG (n, 3) and inertia (n, 3, 3) after burning `fuel_used` (n,) kg.

@@ -65,7 +65,8 @@ class ControlSurface:
     start, end: fractions of the surface's span from its first to its last section. hinge: fraction
     of the chord at both ends. gains: deflection, rad trailing edge down (on a fin: left), over each
     control in Alula's notation. On a mirrored surface `da` and `dr` move the left half the other
-    way, `de` and `df` the same way.
+    way, `de` and `df` the same way. c_l_delta, c_m_delta: section lift and moment (quarter chord)
+    per rad of deflection where they are known.
     """
 
     name: str
@@ -73,6 +74,8 @@ class ControlSurface:
     end: float
     hinge: tuple[float, float]
     gains: Mapping[str, float]
+    c_l_delta: float | None = None
+    c_m_delta: float | None = None
 
 
 @dataclass(frozen=True)
@@ -124,12 +127,16 @@ class Body:
 
 @dataclass(frozen=True)
 class Geometry:
-    """Everything that `alula predict` knows of the shape. blades: by name of the engine."""
+    """Everything that `alula predict` knows of the shape. blades: by name of the engine.
+
+    drag_area: m2, c_d times area of all that is no lifting surface, as the file states it.
+    """
 
     surfaces: tuple[LiftingSurface, ...]
     bodies: tuple[Body, ...] = ()
     airfoils: Mapping[str, Airfoil] = field(default_factory=dict)
     blades: Mapping[str, Blades] = field(default_factory=dict)
+    drag_area: float = 0.0
 
     def surface(self, role: Role) -> LiftingSurface | None:
         """The first surface with this role, None where there is none."""

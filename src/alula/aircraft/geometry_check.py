@@ -23,14 +23,7 @@ _THIN = 1e-6  # of the chord: a strip of less width has no area
 def check_geometry(shape: Geometry, file: AircraftFile, path: Path) -> tuple[Message, ...]:
     """What was noticed; raises BadInput with a message for each thing that cannot be."""
     where = f"{path}, geometry"
-    errors: list[Message] = []
-    for surface in shape.surfaces:
-        errors += _sections(surface, f"{where}.surfaces.{surface.name}")
-        for control in surface.controls:
-            errors += _control(control, f"{where}.surfaces.{surface.name}.controls.{control.name}")
-        errors += _spans(surface, f"{where}.surfaces.{surface.name}.controls")
-    for body in shape.bodies:
-        errors += _body(body, f"{where}.bodies.{body.name}")
+    errors = shape_errors(shape, where)
     engines = [engine.name for engine in file.engines]
     for name in shape.blades:
         if name not in engines:
@@ -43,11 +36,24 @@ def check_geometry(shape: Geometry, file: AircraftFile, path: Path) -> tuple[Mes
                     "Name the table after the engine whose propeller it is.",
                 )
             )
-    if not errors:  # overlaps of a surface that is none would only repeat what was said
-        errors += _together(shape.surfaces, f"{where}.surfaces")
     if errors:
         raise BadInput(*errors)
     return (*_unmoved(shape, file, where), *_reference(shape, file, where))
+
+
+def shape_errors(shape: Geometry, where: str) -> list[Message]:
+    """A message for each thing that no shape can be: sections, controls, bodies, overlaps."""
+    errors: list[Message] = []
+    for surface in shape.surfaces:
+        errors += _sections(surface, f"{where}.surfaces.{surface.name}")
+        for control in surface.controls:
+            errors += _control(control, f"{where}.surfaces.{surface.name}.controls.{control.name}")
+        errors += _spans(surface, f"{where}.surfaces.{surface.name}.controls")
+    for body in shape.bodies:
+        errors += _body(body, f"{where}.bodies.{body.name}")
+    if not errors:  # overlaps of a surface that is none would only repeat what was said
+        errors += _together(shape.surfaces, f"{where}.surfaces")
+    return errors
 
 
 def _error(code: str, where: str, expected: str, found: str, do: str) -> Message:

@@ -8,14 +8,14 @@ from typing import Any
 import numpy as np
 from pydantic import ValidationError
 
-from alula.aircraft.aircraft import SENSOR_GROUPS, Aircraft, Envelope
+from alula.aircraft.aircraft import SENSOR_GROUPS, Aircraft, Envelope, Uncertainty
 from alula.aircraft.control_signs import sign_factor
 from alula.aircraft.frames import rotation, to_body
 from alula.aircraft.geometry_check import check_geometry
 from alula.aircraft.load_engines import actuators, engine_messages, engine_models
 from alula.aircraft.load_geometry import geometry
 from alula.aircraft.load_mass import mass_model
-from alula.aircraft.schema import AircraftFile, Control
+from alula.aircraft.schema import AircraftFile, Control, UncertaintyTable
 from alula.base.arrays import frozen
 from alula.base.messages import BadInput, Message, refuse, warn
 from alula.base.project_messages import expand, explain, read_toml
@@ -77,6 +77,7 @@ def load_aircraft(path: str | Path) -> Aircraft:
         sha256=sha256,
         aero=None if file.aero is None else expand(file.aero, path, "aero"),
         geometry=shape,
+        uncertainty=_uncertainty(file.uncertainty),
         messages=(
             *(mass.messages if mass else ()),
             *_geometry(file, path),
@@ -84,6 +85,19 @@ def load_aircraft(path: str | Path) -> Aircraft:
             *engine_messages(engines, path),
             *(check_geometry(shape, file, path) if shape else ()),
         ),
+    )
+
+
+def _uncertainty(table: UncertaintyTable | None) -> Uncertainty | None:
+    """Both frames' axes are parallel, so a standard deviation is the same in either."""
+    if table is None:
+        return None
+    return Uncertainty(
+        table.mass,
+        frozen(np.abs(table.cg)),
+        table.inertia,
+        frozen(np.abs(table.hub)),
+        table.propeller_inertia,
     )
 
 

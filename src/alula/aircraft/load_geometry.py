@@ -58,7 +58,8 @@ def geometry(table: GeometryTable, turn: Array, path: Path) -> Geometry:
                 at = f"{where}.surfaces.{surface.name}.sections[{k}].airfoil"
                 airfoils[section.airfoil] = _by_name(section.airfoil, airfoils, at)
     bodies = tuple(_body(b, turn) for b in table.bodies)
-    return Geometry(surfaces, bodies, airfoils, _blades(table.blades, f"{where}.blades"))
+    blades = _blades(table.blades, f"{where}.blades")
+    return Geometry(surfaces, bodies, airfoils, blades, table.drag_area)
 
 
 def _blades(tables: Mapping[str, Mapping[str, Any]], where: str) -> dict[str, Blades]:
@@ -93,8 +94,9 @@ def _surface(table: SurfaceTable, turn: Array) -> LiftingSurface:
 def _control(table: ControlSurfaceTable) -> ControlSurface:
     hinge = table.hinge if isinstance(table.hinge, list) else [table.hinge] * 2
     return ControlSurface(
-        table.name, table.span[0], table.span[1], (hinge[0], hinge[1]), dict(table.gains)
-    )
+        table.name, table.span[0], table.span[1], (hinge[0], hinge[1]), dict(table.gains),
+        table.c_l_delta, table.c_m_delta,
+    )  # fmt: skip
 
 
 def _body(table: BodyTable, turn: Array) -> Body:

@@ -86,6 +86,16 @@ class EnvelopeTable(Table):
         return self
 
 
+class UncertaintyTable(Table):
+    """Standard deviations of what was estimated: a sample of the aircraft is drawn from them."""
+
+    mass: NotNegative = Field(default=0.0, le=0.5, description="of itself")
+    cg: Vector = Field(default=[0.0, 0.0, 0.0], description="m, along the datum's axes")
+    inertia: NotNegative = Field(default=0.0, le=0.5, description="of itself")
+    hub: Vector = Field(default=[0.0, 0.0, 0.0], description="of each engine's position, m")
+    propeller_inertia: NotNegative = Field(default=0.0, le=0.5, description="of itself")
+
+
 class AircraftFile(Table):
     """An aircraft file, `schema = "alula.aircraft/1"`."""
 
@@ -98,6 +108,7 @@ class AircraftFile(Table):
     datum: Datum = Datum(name="center of gravity", frame="body")
     reference: Reference
     mass: Mass | None = None
+    uncertainty: UncertaintyTable | None = None
     sensors: dict[str, Sensor] = Field(default_factory=dict)
     engines: list[EngineTable] = Field(default_factory=list)
     controls: dict[str, Control] = Field(default_factory=dict)

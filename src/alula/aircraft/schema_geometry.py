@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
-from alula.aircraft.schema_table import Number, Positive, Table, Vector
+from alula.aircraft.schema_table import NotNegative, Number, Positive, Table, Vector
 
 Angle = Annotated[float, Field(ge=-90.0, le=90.0, allow_inf_nan=False)]
 Count = Annotated[int, Field(ge=1, le=400)]
@@ -78,6 +78,12 @@ class ControlSurfaceTable(Table):
     gains: dict[str, Number] = Field(
         min_length=1, description="own deflection over the control's, by control: {da = 1.0}"
     )
+    c_l_delta: Positive | None = Field(
+        default=None, description="section lift per rad of deflection; default by its hinge"
+    )
+    c_m_delta: Number | None = Field(
+        default=None, description="section moment about the quarter chord, the same"
+    )
 
 
 class SurfaceTable(Table):
@@ -107,6 +113,9 @@ class GeometryTable(Table):
 
     surfaces: Annotated[list[SurfaceTable], Field(min_length=1, max_length=40)]
     bodies: Annotated[list[BodyTable], Field(max_length=40)] = Field(default_factory=list)
+    drag_area: NotNegative = Field(
+        default=0.0, description="c_d times area of all that is no lifting surface, m2"
+    )
     airfoils: dict[str, AirfoilTable] = Field(default_factory=dict)
     blades: dict[str, dict[str, Any]] = Field(
         default_factory=dict, description="propeller blades, by the engine's name"

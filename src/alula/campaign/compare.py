@@ -1,10 +1,10 @@
-"""`alula compare`: results and models from files, side by side, judged on a project's maneuvers."""
+"""`alula compare`: sources of derivatives side by side, judged on a project's maneuvers."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +14,10 @@ from alula.base.messages import Message, refuse, warn
 from alula.campaign.check import Progress, check_project
 from alula.campaign.hold_out import with_held_out
 from alula.campaign.job import coefficient_data
-from alula.campaign.results import Source, named, read_source
+from alula.campaign.predict import Asked
+from alula.campaign.results import SOURCES, Source, named, read_sources
+from alula.campaign.sources.alike import alike
+from alula.campaign.sources.convert import convert
 from alula.flight import Maneuver, SourceFile
 from alula.identify import CoefficientData, Series
 from alula.identify.compare import Row, compare
@@ -52,26 +55,39 @@ def run_comparison(
     paths: Sequence[Path],
     *,
     project: str | None = None,
+    methods: Sequence[str] = (),
+    asked: Asked | None = None,
+    alpha: float | None = None,
+    origin: Array | None = None,
     seed: int | None = None,
     progress: Progress = lambda _: None,
 ) -> Comparison:
-    """Compare result files with the first. project: judges each on its held-out maneuvers.
+    """Compare sources with the first. project: judges each on its held-out maneuvers.
 
-    Raises BadInput for fewer than two files and for files that are neither a result nor a model.
+    methods, asked: how aircraft files are predicted. alpha: rad, where Datcom's table is read and
+    for sources that state no angle. origin: (3,) m, of AVL's and Datcom's axes from the datum.
+    Raises BadInput for fewer than two sources and for files that are none.
     """
-    if len(paths) < 2:
+    sources = named([s for path in paths for s in read_sources(path, methods, asked, alpha)])
+    if len(sources) < 2:
         raise refuse(
             "too_few_results",
             where="alula compare",
-            expected="two results or more",
-            found=str(len(paths)),
-            do="Name files that `alula identify --json` or `--model` wrote.",
+            expected="two sources or more",
+            found=str(len(sources)),
+            do=f"Name {SOURCES}.",
         )
-    sources = named([read_source(path) for path in paths])
-    rows = compare([s.column for s in sources])
-    files = [s.file for s in sources]
+    columns, converted = convert(
+        [s.column for s in sources], [s.frame for s in sources], [s.stated for s in sources],
+        alpha=alpha, origin=origin,
+    )  # fmt: skip
+    columns, unlike = alike(columns)
+    sources = tuple(replace(s, column=c) for s, c in zip(sources, columns, strict=True))
+    rows = compare(columns)
+    files = list(dict.fromkeys(s.file for s in sources))
+    at_first = [*converted, *unlike]
     if project is None:
-        return Comparison(sources, rows, {}, {}, (), {}, tuple(files), ())
+        return Comparison(sources, rows, {}, {}, (), {}, tuple(files), tuple(at_first))
     checked = with_held_out(check_project(project, (), progress), seed or 0)
     progress("reconstructing the flight path")
     spec = checked.project.reconstruct
@@ -80,7 +96,7 @@ def run_comparison(
     )
     data = coefficient_data(checked, path, shared=spec.share == "all")
     chosen = [d for d in data if d.maneuver.held_out]
-    said = list(checked.all_messages()) + list(path.messages)
+    said = [*at_first, *checked.all_messages(), *path.messages]
     if not chosen:
         chosen = list(data)
         said.append(
@@ -93,10 +109,10 @@ def run_comparison(
                 "shows its fit, not what it predicts.",
             )
         )
-    asked = list(checked.project.identify.models) or sorted(
+    wanted = list(checked.project.identify.models) or sorted(
         {c for s in sources for c in s.column.formulas}
     )
-    judged, samples = judge(sources, chosen, asked)
+    judged, samples = judge(sources, chosen, wanted)
     seen = {
         d.maneuver.id: tuple(s.saw(d.maneuver, checked.flights[d.maneuver.log]) for s in sources)
         for d in chosen

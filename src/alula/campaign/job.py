@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -16,8 +18,10 @@ from alula.base.project import Project
 from alula.base.provenance import provenance
 from alula.campaign.check import Checked, Progress, check_project
 from alula.campaign.hold_out import with_held_out
+from alula.campaign.identify_task import IdentifyTask, Measured
 from alula.campaign.measured import engines_of, measured_maneuvers
-from alula.campaign.methods import IDENTIFIERS, IdentifyTask, identify_by, method_name
+from alula.campaign.methods import IDENTIFIERS, identify_by, method_name
+from alula.campaign.prior_model import with_named_priors
 from alula.flight import Flight, Maneuver
 from alula.identify import (
     CoefficientData,
@@ -155,17 +159,38 @@ def identify_project(
     seed: int = 0,
 ) -> Identification:
     """The models identified from reconstructed maneuvers by the method of that name."""
+    measure = partial(measured_maneuvers, checked, reconstruction)
+    found = identify_by(method, task_of(checked, data, measure, models, truth, seed))
+    return replace(found, messages=(*_options(checked, models)[1], *found.messages))
+
+
+def _options(checked: Checked, models: Mapping[str, str]) -> tuple[dict[str, Any], list[Message]]:
+    """[identify.options], with the priors of a model's file where one is named."""
+    project = checked.project
+    return with_named_priors(
+        project.identify.options, Path(project.path).parent, checked.aircraft, models
+    )
+
+
+def task_of(
+    checked: Checked,
+    data: tuple[CoefficientData, ...],
+    measure: Callable[[], Measured],
+    models: Mapping[str, str],
+    truth: Mapping[str, float] | None = None,
+    seed: int = 0,
+) -> IdentifyTask:
+    """What a method of identification may ask of a project."""
     base = checked.aircraft
-    task = IdentifyTask(
+    return IdentifyTask(
         data=data,
-        measure=partial(measured_maneuvers, checked, reconstruction),
+        measure=measure,
         models=models,
         reference=Reference(base.S, base.b, base.c, base.reference_point),
-        options=checked.project.identify.options,
+        options=_options(checked, models)[0],
         truth=truth,
         seed=seed,
     )
-    return identify_by(method, task)
 
 
 def report_of(job: Job, date: str, seed: int | None) -> ReportInput:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Literal
 
-from alula.base.messages import refuse
+from alula.base.messages import BadInput, refuse
 from alula.identify.likelihood import Prior
 
 Kind = Literal[
@@ -89,3 +89,20 @@ def priors_of(given: Mapping[str, list[float]]) -> dict[str, Prior]:
                 do="Correct it; a value without error is `fixed`.",
             )
     return {name: Prior(float(mean), float(se)) for name, (mean, se) in given.items()}
+
+
+def one_of(name: str, value: str, known: Sequence[str]) -> None:
+    """Refuse a value of the option that is none of those known."""
+    if value not in known:
+        raise bad_option(name, "one of " + ", ".join(known), repr(value))
+
+
+def bad_option(name: str, expected: str, found: str) -> BadInput:
+    """The refusal of an option's value."""
+    return refuse(
+        "bad_option",
+        where=f"identify.options.{name}",
+        expected=expected,
+        found=found,
+        do="Correct it.",
+    )

@@ -20,18 +20,22 @@ from alula.campaign.job import (
     identify_project,
     report_of,
     served_models,
+    task_of,
 )
 from alula.campaign.learned import LEARNED, learned_from, seen_by
+from alula.campaign.measured import measured_maneuvers
+from alula.campaign.methods import identify_by
 from alula.flight import Maneuver
-from alula.identify import CoefficientData, identified_model
+from alula.identify import CoefficientData, Identification, identified_model
 from alula.identify.coefficients import Reference as DataReference
 from alula.identify.coefficients import regressor_variables
+from alula.identify.measured_maneuver import MeasuredManeuver
 from alula.model import AeroModel, Reference, load_model
-from alula.reconstruct import Segment, reconstruct
+from alula.reconstruct import Reconstruction, Segment, reconstruct
 from alula.reconstruct.transfer import engines_on
 from alula.report import ReportInput
 from alula.simulate import airframe_of
-from alula.validate import Case, Validation, validate
+from alula.validate import Case, Reidentified, Validation, reidentify, validate
 from alula.validate.validate import DRAWS, Trim
 
 UNEQUAL = 0.02  # of the sum of thrusts, mean difference of an engine from the others
@@ -45,6 +49,7 @@ class ValidationJob:
     model: AeroModel
     model_sha256: str
     validation: Validation
+    reidentified: tuple[Reidentified, ...] = ()
 
     def all_messages(self) -> tuple[Message, ...]:
         """The messages of every stage, each once."""
@@ -60,16 +65,26 @@ def run_validation(
     trim: Trim = "none",
     horizon: float | None = None,
     draws: int = DRAWS,
+    reidentified: int = 0,
     seed: int | None = None,
     progress: Progress = lambda _: None,
 ) -> ValidationJob:
     """Validate by flying. model: a file; None identifies the project's own.
 
     only: maneuvers to fly; where the model is identified here they are held out of the estimate.
-    Without it those held out are flown, and where none is, all, labeled as seen. Raises
+    Without it those held out are flown, and where none is, all, labeled as seen. reidentified: how
+    often flights of the model identified here are identified again; 0: not. Raises
     BadInput for what cannot be used.
     """
     given = None if model is None else load_model(model)
+    if reidentified and given is not None:
+        raise refuse(
+            "usage",
+            where="--reidentify",
+            expected="a model that is identified here",
+            found=f"--model {model}",
+            do="Leave --model out: a file does not say how it was identified.",
+        )
     stamps = [time.perf_counter()]
     checked = check_project(path, (), progress)
     if only:
@@ -134,11 +149,17 @@ def run_validation(
         source=source,
         progress=progress,
     )
+    repeated: tuple[Reidentified, ...] = ()
+    if reidentified:
+        repeated, said = _repeated(
+            checked, reconstruction, data, identification, given, reidentified, seed or 0, progress
+        )
+        messages += said
     stamps.append(time.perf_counter())
     stages = ("read", "reconstruct", "identify", "fly")
     seconds = dict(zip(stages, np.diff(stamps).tolist(), strict=True))
     job = Job(checked, reconstruction, data, identification, seconds, messages)
-    return ValidationJob(job, given, sha256, result)
+    return ValidationJob(job, given, sha256, result, repeated)
 
 
 def report_of_validation(done: ValidationJob, date: str, seed: int | None) -> ReportInput:
@@ -148,12 +169,54 @@ def report_of_validation(done: ValidationJob, date: str, seed: int | None) -> Re
         base,
         identification=base.identification if done.job.identification.parameters else None,
         validation=done.validation,
+        reidentified=done.reidentified,
         provenance={
             **base.provenance,
             "model": done.validation.source,
             **({"model_sha256": done.model_sha256} if done.model_sha256 else {}),
             "model_origin": done.model.provenance,
         },
+    )
+
+
+def _repeated(
+    checked: Checked,
+    reconstruction: Reconstruction,
+    data: tuple[CoefficientData, ...],
+    result: Identification,
+    model: AeroModel,
+    draws: int,
+    seed: int,
+    progress: Progress,
+) -> tuple[tuple[Reidentified, ...], tuple[Message, ...]]:
+    """Flights of the model, identified again by the project's own method."""
+    method = checked.project.identify.method
+    learned = [(s, d) for s, d in zip(reconstruction.segments, data, strict=True)
+               if not d.maneuver.held_out]  # fmt: skip
+    ids = {d.maneuver.id for _, d in learned}
+    readings: tuple[MeasuredManeuver, ...] = ()
+    if method in ("oe", "fe"):
+        every, _, _ = measured_maneuvers(checked, reconstruction)
+        readings = tuple(m for m in every if m.maneuver.id in ids)
+
+    def identify(
+        other: Sequence[CoefficientData], read: Sequence[MeasuredManeuver]
+    ) -> Identification:
+        models = result.formulas or {c: fit.formula for c, fit in result.fits.items()}
+        task = task_of(checked, tuple(other), lambda: (tuple(read), (), []), models, seed=seed)
+        return identify_by(method, task)
+
+    return reidentify(
+        model,
+        result,
+        [_case(checked, s, d, model) for s, d in learned],
+        [d for _, d in learned],
+        readings,
+        identify,
+        gravity=checked.project.reconstruct.gravity,
+        draws=draws,
+        seed=seed,
+        progress=progress,
     )
 
 

@@ -9,6 +9,7 @@ from typing import NoReturn
 import typer
 
 from alula.base.messages import refuse
+from alula.cli.calibrate import calibrate
 from alula.cli.check import check
 from alula.cli.compare import compare
 from alula.cli.contract import Command
@@ -20,6 +21,8 @@ from alula.cli.modes import modes
 from alula.cli.navigate import navigate
 from alula.cli.new import new
 from alula.cli.plan import plan
+from alula.cli.predict import predict
+from alula.cli.propeller import propeller
 from alula.cli.schema import schema
 from alula.cli.trim import trim
 from alula.cli.validate import validate
@@ -34,8 +37,10 @@ app = typer.Typer(
 COMMANDS = (
     new,
     check,
+    calibrate,
     identify,
     compare,
+    predict,
     plan,
     fly,
     trim,
@@ -43,6 +48,7 @@ COMMANDS = (
     modes,
     validate,
     navigate,
+    propeller,
     export,
     schema,
 )

@@ -1,26 +1,29 @@
-"""`alula compare RESULT...`: methods, data and models side by side."""
+"""`alula compare SOURCE...`: methods, data, models and predictions side by side."""
 
 from __future__ import annotations
 
 import math
+from math import radians
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from alula.cli.contract import Command, JsonOption, QuietOption, SeedOption, ThreadsOption
+from alula.cli.predict import HeightOption, Method, SpeedOption
 
 if TYPE_CHECKING:
     from alula.campaign import Comparison
-    from alula.identify.compare import Row
+    from alula.identify.compare import Difference, Row
 
 
 def compare(
     results: Annotated[
         list[Path],
         typer.Argument(
-            metavar="RESULT...",
-            help="Results (identify --json) and model files; the others are set against the first.",
+            metavar="SOURCE...",
+            help="Results and predictions (--json), models, aircraft files (predicted now), AVL's "
+            "ST or SB output, Digital Datcom's, tables; set against the first.",
         ),
     ],
     project: Annotated[
@@ -35,12 +38,34 @@ def compare(
             help="Exit 1 where a parameter differs by more combined standard errors.",
         ),
     ] = None,
+    method: Annotated[
+        list[Method] | None,
+        typer.Option(help="How aircraft files are predicted, a column each; default combined."),
+    ] = None,
+    V: SpeedOption = None,
+    h: HeightOption = 0.0,
+    alpha_deg: Annotated[
+        float | None,
+        typer.Option(
+            "--alpha-deg",
+            metavar="DEG",
+            help="Of predictions, of Datcom's table, and where a source in stability axes states "
+            "none.",
+        ),
+    ] = None,
+    origin: Annotated[
+        str | None,
+        typer.Option(
+            metavar="X,Y,Z",
+            help="Origin of AVL's and Datcom's axes: m, body axes from the aircraft's datum.",
+        ),
+    ] = None,
     json: JsonOption = "",
     seed: SeedOption = None,
     threads: ThreadsOption = 1,
     quiet: QuietOption = False,
 ) -> None:
-    """Set results side by side, parameter by parameter.
+    """Set sources side by side, parameter by parameter, in one convention.
 
     Exit 0: done. 1: some parameter is not identifiable in one of them, or differs by more than
     --limit. 2: bad input.
@@ -48,10 +73,16 @@ def compare(
     command = Command("comparison", json, seed, threads, quiet)
     with command.run():
         from alula.campaign import run_comparison
+        from alula.campaign.predict import Asked
 
+        alpha = None if alpha_deg is None else radians(alpha_deg)
         found = run_comparison(
             results,
             project=None if project is None else str(project),
+            methods=[m.value for m in method or ()],
+            asked=Asked(V=V, h=h, alpha=alpha),
+            alpha=alpha,
+            origin=_origin(origin),
             seed=seed,
             progress=command.progress,
         )
@@ -69,6 +100,28 @@ def compare(
         elif far:
             command.status = "check_failed"
         command.say(text_of(found))
+
+
+def _origin(text: str | None) -> Any:
+    if text is None:
+        return None
+    import numpy as np
+
+    from alula.base.messages import refuse
+
+    try:
+        found = np.array([float(x) for x in text.split(",")])
+    except ValueError:
+        found = np.empty(0)
+    if found.shape != (3,) or not np.all(np.isfinite(found)):
+        raise refuse(
+            "usage",
+            where="--origin",
+            expected="three numbers, m: --origin 0.375,0,0",
+            found=f"'{text}'",
+            do="Correct it.",
+        )
+    return found
 
 
 def _apart(rows: list[Row], limit: float | None) -> list[Any]:
@@ -117,6 +170,7 @@ def result_of(found: Comparison, limit: float | None) -> dict[str, Any]:
                         "se": d.entry.se,
                         "verdict": d.entry.verdict,
                         "ratio": d.ratio,
+                        "ratio_ci95": list(d.ratio_ci95),
                         "difference": d.difference,
                         "sigmas": d.sigmas,
                     }
@@ -153,7 +207,12 @@ def text_of(found: Comparison) -> str:
             f"{len(found.rows) - len(shown)} initial states and biases that stand in one column "
             "alone: see --json."
         )
-    lines.append("ratio and difference are to column 1; the difference is in combined se.")
+    lines.append(
+        "ratio, its 95 % interval and the difference are to column 1; the difference is in "
+        "combined se."
+    )
+    if any(_starred(d) for r in shown for d in r.differences):
+        lines.append("* the rate's derivative alone, beside sums with the lag's.")
     if found.judged:
         ids = ", ".join(m.id for m in found.maneuvers)
         held = all(m.held_out for m in found.maneuvers)
@@ -178,6 +237,10 @@ def text_of(found: Comparison) -> str:
     return "\n".join(lines)
 
 
+def _starred(d: Difference | None) -> bool:
+    return d is not None and d.entry.verdict == "alone"
+
+
 def _own(row: Row) -> bool:
     """Whether it is a nuisance of one result: an initial state or bias of a maneuver."""
     alone = sum(d is not None for d in row.differences) == 1
@@ -193,23 +256,27 @@ def _header(found: Comparison) -> str:
     for i in range(1, len(found.sources) + 1):
         out += f"{f'value ({i})':>12}{'se':>10}"
         if i > 1:
-            out += f"{'ratio':>8}{'diff/se':>9}"
+            out += f"{'ratio':>8}{'95 %':>17}{'diff/se':>9}"
     return out
 
 
 def _line(found: Comparison, row: Row) -> str:
     out = f"{row.name:<{_wide(found)}}"
     for i, d in enumerate(row.differences):
-        rest = 17 if i else 0
+        rest = i > 0
         if d is None:
-            out += f"{'-':>12}{'-':>10}" + (f"{'-':>8}{'-':>9}" if rest else "")
+            out += f"{'-':>12}{'-':>10}" + (f"{'-':>8}{'-':>17}{'-':>9}" if rest else "")
             continue
         e = d.entry
         if e.verdict == "not_identifiable":
             out += f"{'not ident.':>12}{'-':>10}"
         else:
-            out += f"{e.value:>12.5g}" + (f"{e.se:>10.2g}" if math.isfinite(e.se) else f"{'-':>10}")
+            value = f"{e.value:.5g}" + ("*" if _starred(d) else "")
+            out += f"{value:>12}" + (f"{e.se:>10.2g}" if math.isfinite(e.se) else f"{'-':>10}")
         if rest:
-            out += f"{d.ratio:>8.3f}" if math.isfinite(d.ratio) else f"{'-':>8}"
+            # + 0.0: no minus before a zero
+            out += f"{d.ratio + 0.0:>8.3f}" if math.isfinite(d.ratio) else f"{'-':>8}"
+            low, high = d.ratio_ci95
+            out += f"{f'{low:.2f} to {high:.2f}' if math.isfinite(low) else '-':>17}"
             out += f"{d.sigmas:>+9.2f}" if math.isfinite(d.sigmas) else f"{'-':>9}"
     return out

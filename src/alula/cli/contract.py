@@ -27,7 +27,7 @@ _STEERING = re.compile(
     r"\x1b(?!\[[\d;]*m)|[\x00-\x08\x0b-\x1a\x1c-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]"
 )
 
-Kind = Literal["", "report", "model", "json", "picture"]
+Kind = Literal["", "report", "model", "json", "picture", "plot", "calibration", "three_view"]
 Status = Literal["ok", "not_identifiable", "check_failed", "bad_input"]
 OWN_FAULT = 70  # sysexits: internal software error
 EXIT: Mapping[Status, int] = {"ok": 0, "not_identifiable": 1, "check_failed": 1, "bad_input": 2}
@@ -225,7 +225,8 @@ def writable(path: Path, kind: Kind = "") -> None:
 def _is_own(path: Path, kind: str) -> bool:
     marks = {
         "report": b'content="Alula"', "model": b"alula.model/", "json": b'"schema": "alula.',
-        "picture": b'class="splane"',
+        "picture": b'class="splane"', "plot": b"Alula",
+        "calibration": b"alula.imu_calibration/", "three_view": b'class="threeview"',
     }  # fmt: skip
     try:
         with path.open("rb") as file:

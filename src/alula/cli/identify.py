@@ -99,6 +99,7 @@ def identify(
 def result_of(job: Job) -> dict[str, Any]:
     """The envelope's `result`."""
     found, path = job.identification, job.reconstruction
+    plane = job.checked.aircraft
     return {
         "method": found.method,
         "status": found.status,
@@ -120,6 +121,8 @@ def result_of(job: Job) -> dict[str, Any]:
             }
             for p in found.parameters
         ],
+        "reference": {"S": plane.S, "b": plane.b, "c": plane.c},
+        "reference_point": plane.reference_point.tolist(),
         "formulas": dict(found.formulas) or {c: f.formula for c, f in found.fits.items()},
         "maneuvers": {
             "learned": [m.id for m in job.checked.maneuvers if not m.held_out],

@@ -1,4 +1,4 @@
-"""`alula schema`: JSON schemas of the project, the aircraft and the plan file, for editors."""
+"""`alula schema`: JSON schemas of the project, aircraft, plan and propeller file, for editors."""
 
 from __future__ import annotations
 
@@ -22,6 +22,7 @@ class Kind(StrEnum):
     project = "project"
     aircraft = "aircraft"
     plan = "plan"
+    propeller = "propeller"
 
 
 def schema(
@@ -33,7 +34,7 @@ def schema(
     threads: ThreadsOption = 1,
     quiet: QuietOption = False,
 ) -> None:
-    """Print the JSON schema of a project, aircraft or plan file.
+    """Print the JSON schema of a project, aircraft, plan or propeller file.
 
     Editors that know JSON schemas for TOML complete and check the files with it.
     """
@@ -49,6 +50,10 @@ def schema(
             from alula.simulate.virtual_plan import Plan
 
             found = Plan.model_json_schema()
+        elif kind is Kind.propeller:
+            from alula.aircraft.schema_blades import PropellerFile
+
+            found = PropellerFile.model_json_schema(by_alias=True)
         else:
             from alula.aircraft import aircraft_schema
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -57,6 +58,10 @@ def validate(
     draws: Annotated[
         int, typer.Option(metavar="N", min=0, help="Parameter sets behind the band; 0: no band.")
     ] = 40,
+    reidentify: Annotated[
+        int,
+        typer.Option(metavar="N", min=0, help="Identify flights of the model again, N times."),
+    ] = 0,
     json: JsonOption = "",
     seed: SeedOption = None,
     threads: ThreadsOption = 1,
@@ -80,6 +85,7 @@ def validate(
             trim=trim.value,
             horizon=horizon,
             draws=draws,
+            reidentified=reidentify,
             seed=seed,
             progress=command.progress,
         )
@@ -109,6 +115,7 @@ def result_of(done: ValidationJob) -> dict[str, Any]:
         "status": found.status,
         "evidence": [_evidence(row) for row in found.evidence],
         "maneuvers": [_flown(one) for one in found.flown],
+        "reidentified": [asdict(r) for r in done.reidentified],
     }
 
 
@@ -213,6 +220,18 @@ def text_of(done: ValidationJob) -> str:
             )
         if row.reason:
             lines.append(f"          {row.reason}")
+    if done.reidentified:
+        lines += [
+            "",
+            "Flights of the model, identified again",
+            f"  {'parameter':<22}{'flown':>11}{'bias':>11}{'scatter':>11}{'stated se':>11}"
+            f"{'inside':>8}",
+        ]
+        lines += [
+            f"  {r.name:<22}{r.truth:>11.5g}{r.mean - r.truth:>11.2g}{r.scatter:>11.2g}"
+            f"{r.stated:>11.2g}{r.inside:>8.0%}"
+            for r in done.reidentified
+        ]
     return "\n".join([*lines, "", found.status])
 
 

@@ -79,6 +79,7 @@ def daveml_text(model: AeroModel, *, author: str, date: str, cases: int = 20) ->
     Raises BadInput for a cubic table, which the standard's splines are not.
     """
     model.check_without_lift("DAVE-ML")
+    model.check_without_wash("DAVE-ML")
     for name, table in model.tables.items():
         if table.interpolation != "linear":
             raise refuse(

@@ -46,6 +46,7 @@ def jsbsim_text(
     hold the model.
     """
     model.check_without_lift("JSBSim")
+    model.check_without_wash("JSBSim")
     root = Element("fdm_config", name=aircraft.name, version="2.0", release="BETA")
     _header(root, aircraft, model, author, date)
     _metrics(root, model)

@@ -7,11 +7,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 _CONSTANT = "_0"
+_Z = 1.96  # of a normal distribution's 95 % interval
+ALONE = "alone"  # verdict of a derivative to a rate whose lag is not known, beside sums of both
 
 
 @dataclass(frozen=True)
 class Entry:
-    """One parameter in one column. se: NaN where the source states none."""
+    """One parameter in one column. se: NaN where the source states none.
+
+    verdict: of the identification; 'assumed'; 'sum' of a rate's derivative with its lag's; ALONE.
+    """
 
     value: float
     se: float = math.nan
@@ -21,7 +26,8 @@ class Entry:
 
 @dataclass(frozen=True)
 class Column:
-    """One result or model. kind: 'identification' or 'model'. formulas: by coefficient.
+    """One source. kind: 'identification', 'model', 'prediction', 'avl', 'datcom' or 'table'.
+    formulas: by coefficient.
 
     se_is: what its standard errors are, in words.
     """
@@ -39,13 +45,16 @@ class Column:
 class Difference:
     """One entry against the first column's. ratio: value over the first's, NaN over zero.
 
-    sigmas: difference over the root of both squared standard errors; NaN where one states none.
+    ratio_ci95: its 95 % interval by the errors that are stated, as if independent; NaN where none
+    is or the first's value is not told from zero. sigmas: difference over the root of both squared
+    standard errors; NaN where one states none, or one is a sum with a lag and one is not.
     """
 
     entry: Entry
     ratio: float
     difference: float
     sigmas: float
+    ratio_ci95: tuple[float, float] = (math.nan, math.nan)
 
 
 @dataclass(frozen=True)
@@ -89,8 +98,29 @@ def _row(name: str, entries: Sequence[Entry | None]) -> Row:
             both = math.hypot(entry.se, base.se)
             ratio = entry.value / base.value if base.value else math.nan
             sigmas = 0.0 if entry is base else off / both if both > 0.0 else math.nan
-            out.append(Difference(entry, ratio, off, sigmas))
+            if (entry.verdict == ALONE) != (base.verdict == ALONE):
+                sigmas = math.nan
+            interval = (1.0, 1.0) if entry is base else ratio_interval(entry, base)
+            out.append(Difference(entry, ratio, off, sigmas, interval))
     return Row(name, unit, tuple(out))
+
+
+def ratio_interval(entry: Entry, base: Entry) -> tuple[float, float]:
+    """95 % interval of entry over base, by Fieller's theorem (1954, J. R. Stat. Soc. B 16).
+
+    An error that is not stated counts as none; without any, and where base is not told from zero,
+    the interval is NaN: every ratio is possible.
+    """
+    nothing = (math.nan, math.nan)
+    errors = [x.se if math.isfinite(x.se) else 0.0 for x in (entry, base)]
+    if not base.value or not any(errors) or not math.isfinite(entry.value):
+        return nothing
+    ratio, g = entry.value / base.value, (_Z * errors[1] / base.value) ** 2
+    if not g < 1.0:
+        return nothing
+    own = (errors[0] / base.value) ** 2
+    half = _Z * math.sqrt(own * (1.0 - g) + ratio**2 * (errors[1] / base.value) ** 2)
+    return (ratio - half) / (1.0 - g), (ratio + half) / (1.0 - g)
 
 
 def _with_mean_constants(column: Column, columns: Sequence[Column]) -> dict[str, Entry]:

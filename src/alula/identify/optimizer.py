@@ -157,18 +157,21 @@ def minimize(
 
 def _step(point: Point, held: Flags, damping: float) -> Array:
     """Minus M^-1 times gradient, (k,), in the combinations that carry information."""
-    free = ~held
-    step = np.zeros(len(held))
-    if not free.any():
+    if held.any():
+        step = np.zeros(len(held))
+        free = ~held
+        if free.any():
+            within = Point(0.0, point.gradient[free], point.information[np.ix_(free, free)])
+            step[free] = _step(within, np.zeros(int(free.sum()), dtype=bool), damping)
         return step
-    M = point.information[np.ix_(free, free)]
-    size = np.sqrt(np.diag(M))
+    size = np.sqrt(point.information.diagonal())
     size[size == 0.0] = 1.0
-    values, axes = np.linalg.eigh(M / np.outer(size, size))
+    values, axes = np.linalg.eigh(point.information / (size[:, None] * size))
+    along = (point.gradient / size) @ axes
     kept = values > ROUNDING * max(float(values[-1]), 0.0)
-    along = axes[:, kept].T @ (point.gradient[free] / size)
-    step[free] = -(axes[:, kept] @ (along / (values[kept] + damping))) / size
-    return step
+    along = np.divide(along, values + damping, out=np.zeros(len(along)), where=kept)
+    out: Array = -(axes @ along) / size
+    return out
 
 
 def _finite(point: Point) -> bool:

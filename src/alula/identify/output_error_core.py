@@ -13,6 +13,8 @@ from alula.identify.measured_maneuver import CONTROLS, STATES, MeasuredManeuver
 from alula.model import AXES, AeroModel
 
 Columns = NDArray[np.int64]
+# The outputs that tell a coefficient of force.
+TOLD_BY = {"CX": {"ax"}, "CY": {"ay"}, "CZ": {"az"}, "CD": {"ax", "az"}, "CL": {"ax", "az"}}
 
 
 class Spread:
@@ -55,7 +57,7 @@ def input_rows(m: MeasuredManeuver, model: AeroModel) -> Array:
     """
     wanted = [c for c in AXES[model.axes] if c not in model.coefficients]
     known = dict(m.coefficients)
-    if any(c not in known for c in wanted):
+    if any(c in TOLD_BY and c not in known and TOLD_BY[c] <= m.outputs.keys() for c in wanted):
         known = {**force_coefficients(m), **known}
     rows = np.zeros((len(m.t), 28))
     for j, name in enumerate(STATES):

@@ -256,12 +256,11 @@ class FlightProblem:
         if len(parts) == 1 and len(self._fits[0].used) == k:
             flown, information, gradient, squares, counts = parts[0]
             finite = flown == self._fits[0].samples
-            return Sums(information[:, :, :k], gradient[:, :k], squares, counts, finite)
+            return Sums(information, gradient, squares, counts, finite)
         whole, slope = np.zeros((m, k, k)), np.zeros((m, k))
         for fit, (_, information, gradient, _, _) in zip(self._fits, parts, strict=True):
-            n = len(fit.used)
-            whole[:, fit.used[:, None], fit.used] += information[:, :, :n]
-            slope[:, fit.used] += gradient[:, :n]
+            whole[:, fit.used[:, None], fit.used] += information
+            slope[:, fit.used] += gradient
         squares = np.sum([p[3] for p in parts], axis=0)
         counts = np.sum([p[4] for p in parts], axis=0)
         finite = all(p[0] == fit.samples for fit, p in zip(self._fits, parts, strict=True))

@@ -5,7 +5,7 @@ from alula.model.file import load_model, model_text, save_model
 from alula.model.grammar import parse, reference_scales, regressors
 from alula.model.lookup import LookupTable, lookup_table
 from alula.model.stall import Stall
-from alula.model.table import evaluate_in_core, to_table
+from alula.model.table import TableParts, evaluate_in_core, table_parts, to_table
 from alula.model.terms import COEFFICIENTS, LIFT, VARIABLES, Factor, Term
 
 __all__ = [
@@ -18,6 +18,7 @@ __all__ = [
     "LookupTable",
     "Reference",
     "Stall",
+    "TableParts",
     "Term",
     "aero_model",
     "evaluate_in_core",
@@ -28,5 +29,6 @@ __all__ = [
     "reference_scales",
     "regressors",
     "save_model",
+    "table_parts",
     "to_table",
 ]

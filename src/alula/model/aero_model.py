@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -62,7 +63,7 @@ class AeroModel:
     tables: Mapping[str, LookupTable] = field(default_factory=dict)
     stall: Stall | None = None
 
-    @property
+    @cached_property
     def names(self) -> tuple[str, ...]:
         """Names of the parameters, in the order of `values`."""
         return tuple(term.name(coefficient) for coefficient, term in self.terms)
@@ -108,6 +109,17 @@ class AeroModel:
                 expected=f"a drag of alpha and the controls for {consumer}",
                 found=self.formulas["CD"],
                 do="Identify the drag as '1 + alpha + alpha^2' for this export.",
+            )
+
+    def check_without_wash(self, consumer: str) -> None:
+        """Raise BadInput where a term uses the slipstream's wash: `consumer` cannot know it."""
+        if any("wash" in f.variables for _, term in self.terms for f in term.factors):
+            raise refuse(
+                "wash_in_model",
+                where=f"aerodynamic model '{self.name}'",
+                expected=f"terms without the propeller's slipstream for {consumer}",
+                found="the variable 'wash'",
+                do="Export the tables for the flight computer, or a model without propwash.",
             )
 
     @property

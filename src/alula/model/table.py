@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -66,8 +67,19 @@ class _Slots:
         return slot
 
 
-def to_table(model: AeroModel) -> Any:
-    """The core's TermTable of a model; its values are `model.values`.
+@dataclass(frozen=True)
+class TableParts:
+    """An AeroModel as the core's table: steps (m, 6) of operation, a, b, knot, c, table; terms
+    (k, 2) of coefficient and slot; the tables in the order in which steps number them.
+    """
+
+    steps: Array
+    terms: Array
+    tables: Mapping[str, LookupTable]
+
+
+def table_parts(model: AeroModel) -> TableParts:
+    """What the core's TermTable is made of.
 
     Raises BadInput where the model has more terms or products than the table holds.
     """
@@ -85,6 +97,19 @@ def to_table(model: AeroModel) -> Any:
             found=f"{len(terms)} terms and {len(slots.steps)} products",
             do="Remove terms that do not matter.",
         )
+    return TableParts(
+        np.array(slots.steps, dtype=np.float64).reshape(-1, 6),
+        np.array(terms, dtype=np.float64).reshape(-1, 2),
+        slots.tables,
+    )
+
+
+def to_table(model: AeroModel) -> Any:
+    """The core's TermTable of a model; its values are `model.values`.
+
+    Raises BadInput where the model has more terms or products than the table holds.
+    """
+    parts = table_parts(model)
     tables = [
         (
             list(t.breakpoints),
@@ -92,13 +117,11 @@ def to_table(model: AeroModel) -> Any:
             t.interpolation == "cubic",
             t.outside == "line",
         )
-        for t in slots.tables.values()
+        for t in parts.tables.values()
     ]
-    steps = np.array(slots.steps, dtype=np.float64).reshape(-1, 6)
-    places_of = np.array(terms, dtype=np.float64).reshape(-1, 2)
     if not tables:  # the last two columns are the lookups'
-        return core.TermTable(np.ascontiguousarray(steps[:, :4]), places_of)
-    return core.TermTable(steps, places_of, tables)
+        return core.TermTable(np.ascontiguousarray(parts.steps[:, :4]), parts.terms)
+    return core.TermTable(parts.steps, parts.terms, tables)
 
 
 def evaluate_in_core(model: AeroModel, variables: Mapping[str, Array]) -> dict[str, Array]:

@@ -15,6 +15,7 @@ from alula.reconstruct.result import Reconstruction
 if TYPE_CHECKING:
     from alula.logs.card import LogCard
     from alula.navigate import Navigation
+    from alula.validate.reidentify import Reidentified
     from alula.validate.result import Validation
 
 
@@ -40,6 +41,7 @@ class ReportInput:
     identification: Identification | None = None
     validation: Validation | None = None
     navigation: Mapping[str, Navigation] = field(default_factory=dict)
+    reidentified: tuple[Reidentified, ...] = ()
     messages: tuple[Message, ...] = ()
     provenance: Mapping[str, Any] = field(default_factory=dict)
     shape: Aircraft | None = None

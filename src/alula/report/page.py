@@ -12,7 +12,6 @@ from alula.report.html import Html, css_string, join, tag
 from alula.report.input import ReportInput
 from alula.report.sections.coefficients import coefficients
 from alula.report.sections.correlation import correlation
-from alula.report.sections.geometry import geometry, identified_neutral_point
 from alula.report.sections.histories import histories
 from alula.report.sections.log_card import log_cards
 from alula.report.sections.maneuvers import maneuvers
@@ -20,6 +19,7 @@ from alula.report.sections.navigation import navigation
 from alula.report.sections.notes import messages, provenance
 from alula.report.sections.parameters import parameters
 from alula.report.sections.reconstruction import reconstruction
+from alula.report.sections.repeated import repeated
 from alula.report.sections.summary import header
 from alula.report.sections.validation import evidence
 from alula.report.sections.validation_flights import flights
@@ -110,10 +110,14 @@ def _sections(report: ReportInput, figures: FigureStore) -> list[tuple[str, str,
             over_time = histories(report.identification, figures)
             found.append(("histories", "Estimates over time", over_time))
         found.append(("parameters", "Parameters", parameters(report.identification)))
+        if report.reidentified:
+            found.append(("repeated", "Identified again", repeated(report.reidentified)))
         found.append(("correlation", "Correlation", correlation(report.identification)))
     if report.shape is not None and report.shape.geometry is not None:
-        neutral = identified_neutral_point(report.shape, report.identification)
-        found.append(("geometry", "Geometry", geometry(report.shape, neutral)))
+        from alula.report.sections import geometry as shapes  # slow to load
+
+        neutral = shapes.identified_neutral_point(report.shape, report.identification)
+        found.append(("geometry", "Geometry", shapes.geometry(report.shape, neutral)))
     found.append(("messages", "Messages", messages(report)))
     found.append(("provenance", "Provenance", provenance(report)))
     for k, (key, title, content) in enumerate(found):

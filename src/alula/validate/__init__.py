@@ -4,6 +4,7 @@ from alula.validate.case import Case
 from alula.validate.oscillation import Oscillation, fit_oscillation
 from alula.validate.part60 import REGULATION, judge, tolerances
 from alula.validate.quality import Quality, quality
+from alula.validate.reidentify import Reidentified, reidentify
 from alula.validate.result import ChannelMatch, Criterion, Evidence, Flown, Validation
 from alula.validate.validate import validate
 
@@ -16,10 +17,12 @@ __all__ = [
     "Flown",
     "Oscillation",
     "Quality",
+    "Reidentified",
     "Validation",
     "fit_oscillation",
     "judge",
     "quality",
+    "reidentify",
     "tolerances",
     "validate",
 ]

@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from alula.base.arrays import Array, frozen
-from alula.base.messages import BadInput, Message, note, warn
+from alula.base.messages import BadInput, Message, note, refuse, warn
 from alula.model import AeroModel
-from alula.simulate import Airframe, fly, initial_state
+from alula.simulate import Airframe, SimulatedFlight, fly, initial_state
 from alula.validate.case import Case
 from alula.validate.prepare import FORCES, STATES, Recording, driven, recording
 from alula.validate.quality import quality
@@ -102,6 +102,27 @@ def fly_case(
     return result, tuple(messages)
 
 
+def simulated(model: AeroModel, case: Case, gravity: float) -> SimulatedFlight:
+    """A case's controls through the model, to the end; raises BadInput ('diverged') where it leaves
+    what the model can describe, and where `fly_case` does.
+    """
+    where = f"maneuver {case.motion.maneuver.id}"
+    record = recording(case, None)
+    complete, controls, _ = driven(model, record, {}, where)
+    set_up = _Flight(record, case.airframe, controls, gravity)
+    n = len(record.t)
+    columns = set_up.fly(complete, n)
+    if _until(columns, record) < n or len(columns["V"]) < n:
+        raise refuse(
+            "diverged",
+            where=where,
+            expected="a flight that the model can describe to its end",
+            found="one that left it",
+            do="Shorten the maneuver.",
+        )
+    return set_up.flight(complete, n)
+
+
 class _Flight:
     """The simulator set up for one recording: everything but the model."""
 
@@ -142,17 +163,21 @@ class _Flight:
                 high = middle
         return columns
 
-    def _fly(self, model: AeroModel, n: int) -> dict[str, Array]:
-        record = self.record
-        motion = fly(
+    def flight(self, model: AeroModel, n: int) -> SimulatedFlight:
+        """The first n samples; raises BadInput where it diverges."""
+        return fly(
             self.airframe,
             model,
             self.x0,
-            record.t[:n],
+            self.record.t[:n],
             {name: u[:n] for name, u in self.inputs.items()},
             gravity=self.gravity,
             substeps=self.substeps,
-        ).motion
+        )
+
+    def _fly(self, model: AeroModel, n: int) -> dict[str, Array]:
+        record = self.record
+        motion = self.flight(model, n).motion
         out = {name: np.asarray(getattr(motion, name)) for name in (*STATES, *FORCES)}
         out["h"] = out["h"] - record.height_shift
         for name in ("phi", "psi"):  # without jumps, on the turn of the recording

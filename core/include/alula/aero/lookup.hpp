@@ -14,7 +14,8 @@ enum class Outside : std::uint8_t {
 };
 
 // A view: breakpoints of each axis increase, at least two; values row by row, the last axis
-// fastest. No axes: zero everywhere.
+// fastest. No axes: zero everywhere. shared: a number, 0 to 15, for axes of several tables with the
+// same breakpoints at the same variable; -1: none.
 template <class T>
 struct Lookup {
   const T* values = nullptr;
@@ -23,6 +24,7 @@ struct Lookup {
   int axes = 0;
   Interpolation interpolation = Interpolation::linear;
   Outside outside = Outside::hold;
+  std::array<std::int8_t, 3> shared{-1, -1, -1};
 };
 
 namespace detail {
@@ -107,19 +109,32 @@ constexpr Neighbors<S> neighbors(const T* b, int n, const S& x, bool cubic, bool
 
 }  // namespace detail
 
-// The value at (a, b, c), one argument for each axis; those of axes it does not have are not used.
-// Linear: continuous, with kinks at the breakpoints. Cubic: continuous slope, each cell a cubic
-// with the slopes of the parabolas through three neighbors; a product of such along the axes.
+// Where a point lies on one axis of a table.
 template <class S, class T>
-constexpr S lookup(const Lookup<T>& table, const S& a, const S& b, const S& c) {
-  using detail::neighbors;
-  if (table.axes == 0) return S(0);
-  const bool cubic = table.interpolation == Interpolation::cubic;
-  const bool line = table.outside == Outside::line;
-  const auto on_a = neighbors<S>(table.axis[0], table.size[0], a, cubic, line);
-  detail::Neighbors<S> on_b, on_c;
-  if (table.axes > 1) on_b = neighbors<S>(table.axis[1], table.size[1], b, cubic, line);
-  if (table.axes > 2) on_c = neighbors<S>(table.axis[2], table.size[2], c, cubic, line);
+constexpr detail::Neighbors<S> on_axis(const Lookup<T>& table, int k, const S& x) {
+  const auto i = static_cast<unsigned>(k);
+  return detail::neighbors<S>(table.axis[i], table.size[i], x,
+                              table.interpolation == Interpolation::cubic,
+                              table.outside == Outside::line);
+}
+
+// The value where the axes' neighbors are known; those of axes it does not have are not used.
+template <class S, class T>
+constexpr S lookup(const Lookup<T>& table, const detail::Neighbors<S>& on_a,
+                   const detail::Neighbors<S>& on_b, const detail::Neighbors<S>& on_c) {
+  if (table.axes == 3 && table.interpolation == Interpolation::linear) {
+    // Eight corners without a loop.
+    const T* p =
+        table.values + (on_a.first * table.size[1] + on_b.first) * table.size[2] + on_c.first;
+    const T* q = p + table.size[1] * table.size[2];
+    const int row = table.size[2];
+    const S &w0 = on_c.weight[0], &w1 = on_c.weight[1];
+    const S near =
+        on_b.weight[0] * (p[0] * w0 + p[1] * w1) + on_b.weight[1] * (p[row] * w0 + p[row + 1] * w1);
+    const S far =
+        on_b.weight[0] * (q[0] * w0 + q[1] * w1) + on_b.weight[1] * (q[row] * w0 + q[row + 1] * w1);
+    return on_a.weight[0] * near + on_a.weight[1] * far;
+  }
   S sum(0);
   for (int i = 0; i < on_a.count; ++i) {
     const T* plane = table.values + (on_a.first + i) * table.size[1] * table.size[2];
@@ -143,6 +158,19 @@ constexpr S lookup(const Lookup<T>& table, const S& a, const S& b, const S& c) {
   return sum;
 }
 
+// The value at (a, b, c), one argument for each axis; those of axes it does not have are not used.
+// Linear: continuous, with kinks at the breakpoints. Cubic: continuous slope, each cell a cubic
+// with the slopes of the parabolas through three neighbors; a product of such along the axes.
+template <class S, class T>
+constexpr S lookup(const Lookup<T>& table, const S& a, const S& b, const S& c) {
+  if (table.axes == 0) return S(0);
+  const auto on_a = on_axis(table, 0, a);
+  detail::Neighbors<S> on_b, on_c;
+  if (table.axes > 1) on_b = on_axis(table, 1, b);
+  if (table.axes > 2) on_c = on_axis(table, 2, c);
+  return lookup(table, on_a, on_b, on_c);
+}
+
 // Each lane for itself.
 template <class T, int W>
 Lanes<T, W> lookup(const Lookup<T>& table, const Lanes<T, W>& a, const Lanes<T, W>& b,
@@ -151,5 +179,57 @@ Lanes<T, W> lookup(const Lookup<T>& table, const Lanes<T, W>& a, const Lanes<T, 
   for (int i = 0; i < W; ++i) value[i] = lookup(table, a[i], b[i], c[i]);
   return Lanes<T, W>::load(value);
 }
+
+inline constexpr int kSharedAxes = 16;
+
+// Several tables at one point: those that share an axis and a slot share the search as well.
+// `slots`: the point's variables, unchanged while it is in use.
+template <class S, class T>
+class Lookups {
+ public:
+  constexpr Lookups() {
+    for (Known& known : known_) known.slot = -1;
+  }
+
+  constexpr S at(const Lookup<T>& table, const S* slots, int a, int b, int c) {
+    if (table.axes == 0) return S(0);
+    const auto& on_a = place(table, 0, slots, a);
+    const auto& on_b = table.axes > 1 ? place(table, 1, slots, b) : on_a;
+    const auto& on_c = table.axes > 2 ? place(table, 2, slots, c) : on_a;
+    return lookup(table, on_a, on_b, on_c);
+  }
+
+ private:
+  struct Known {
+    int slot;
+    Interpolation interpolation;
+    Outside outside;
+    detail::Neighbors<S> neighbors;
+  };
+
+  constexpr const detail::Neighbors<S>& place(const Lookup<T>& table, int k, const S* slots,
+                                              int slot) {
+    const int shared = table.shared[static_cast<unsigned>(k)];
+    bool alone = shared < 0 || shared >= kSharedAxes;
+    for (int j = 0; j < k; ++j)  // a place that this lookup holds already
+      alone = alone || table.shared[static_cast<unsigned>(j)] == shared;
+    Known& known = known_[alone ? kSharedAxes + k : shared];
+    if (alone || known.slot != slot || known.interpolation != table.interpolation ||
+        known.outside != table.outside)
+      known = {slot, table.interpolation, table.outside, on_axis(table, k, slots[slot])};
+    return known.neighbors;
+  }
+
+  Known known_[kSharedAxes + 3];  // the last three: axes that are not shared
+};
+
+template <class T, int W>
+class Lookups<Lanes<T, W>, T> {
+ public:
+  using L = Lanes<T, W>;
+  L at(const Lookup<T>& table, const L* slots, int a, int b, int c) {
+    return lookup(table, slots[a], slots[b], slots[c]);
+  }
+};
 
 }  // namespace alula

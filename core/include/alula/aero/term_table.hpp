@@ -13,7 +13,8 @@
 
 namespace alula {
 
-// Base variables, the first slots. Rates are pb/2V, qc/2V, rb/2V; angles rad; V m/s.
+// Base variables, the first slots. Rates are pb/2V, qc/2V, rb/2V; angles rad; V m/s. Wash: what the
+// propeller's slipstream has more of axial speed than the free stream, over V.
 enum Variable : int {
   kOne,
   kV,
@@ -27,9 +28,10 @@ enum Variable : int {
   kDr,
   kDf,
   kDt,
-  kMach
+  kMach,
+  kWash
 };
-inline constexpr int kVariables = 13;
+inline constexpr int kVariables = 14;
 
 // Body axes: CX CY CZ Cl Cm Cn. Stability axes: CD in the place of CX, CL in the place of CZ.
 inline constexpr int kCoefficients = 6;
@@ -88,6 +90,18 @@ constexpr bool well_formed(const TermTable& table, int table_count = 0) {
   return true;
 }
 
+// Whether a base variable is used at all.
+constexpr bool uses(const TermTable& table, Variable variable) {
+  const auto is = [&](std::uint8_t slot) { return int{slot} == variable; };
+  for (int i = 0; i < table.step_count; ++i) {
+    const Step& step = table.steps[static_cast<unsigned>(i)];
+    if (is(step.a) || is(step.b) || is(step.c)) return true;
+  }
+  for (int k = 0; k < table.term_count; ++k)
+    if (is(table.terms[static_cast<unsigned>(k)].slot)) return true;
+  return false;
+}
+
 // One coefficient: the terms that belong to it, at slots that are filled as far as they need.
 template <class S, class T>
 constexpr S coefficient(const TermTable& table, const T* values, const S* slots, int which) {
@@ -107,12 +121,19 @@ struct NoLift {
   }
 };
 
-// Fills the slots behind the base variables, which the caller has put into the first places.
-// tables: the lookup tables that the steps name. lift(slots): the lift coefficient, which is called
-// for where a step needs it.
-template <class S, class T = double, class Lift = NoLift>
-constexpr void fill_slots(const TermTable& table, S* slots, const Lookup<T>* tables = nullptr,
-                          Lift&& lift = {}) {
+namespace detail {
+
+// Stands for the lookup tables of a model that has none.
+struct NoLookups {
+  template <class S, class T>
+  constexpr S at(const Lookup<T>&, const S*, int, int, int) const {
+    return S(0);
+  }
+};
+
+template <class S, class T, class Lift, class Tables>
+constexpr void fill_slots(const TermTable& table, S* slots, const Lookup<T>* tables, Lift& lift,
+                          Tables&& looked_up) {
   for (int i = 0; i < table.step_count; ++i) {
     const Step& step = table.steps[static_cast<unsigned>(i)];
     const S& a = slots[step.a];
@@ -123,11 +144,26 @@ constexpr void fill_slots(const TermTable& table, S* slots, const Lookup<T>* tab
       case Operation::ramp: out = select(a > S(step.knot), S(a - S(step.knot)), S(0)); break;
       case Operation::sign: out = select(a > S(0), S(1), select(a < S(0), S(-1), S(0))); break;
       case Operation::lookup:
-        out = lookup(tables[step.table], a, slots[step.b], slots[step.c]);
+        out =
+            looked_up.at(tables[step.table], static_cast<const S*>(slots), step.a, step.b, step.c);
         break;
       case Operation::lift: out = lift(static_cast<const S*>(slots)); break;
     }
   }
+}
+
+}  // namespace detail
+
+// Fills the slots behind the base variables, which the caller has put into the first places.
+// tables: the lookup tables that the steps name. lift(slots): the lift coefficient, which is called
+// for where a step needs it.
+template <class S, class T = double, class Lift = NoLift>
+constexpr void fill_slots(const TermTable& table, S* slots, const Lookup<T>* tables = nullptr,
+                          Lift&& lift = {}) {
+  if (tables == nullptr)
+    detail::fill_slots<S, T>(table, slots, nullptr, lift, detail::NoLookups{});
+  else
+    detail::fill_slots(table, slots, tables, lift, Lookups<S, T>{});
 }
 
 // The coefficients for given slots; values: one per term. A slot is at the same time the

@@ -13,11 +13,12 @@ namespace alula {
 // Which of the motion a kernel differentiates; the rest are plain numbers there.
 enum class Axes { longitudinal, lateral, six };
 
-// L: scalar of V alpha theta q; M: of beta p r phi.
-template <class L, class M>
+// L: scalar of V alpha q; M: of beta p r phi; P: of theta.
+template <class L, class M, class P>
 struct MotionState {
-  L V, alpha, theta, q;
+  L V, alpha, q;
   M beta, p, r, phi;
+  P theta;
 };
 
 // Rates of the eight variables, in their order, then ax ay az; angular accelerations stand among
@@ -29,32 +30,31 @@ struct MotionRates {
 };
 
 namespace detail {
-// Sine and cosine, of a plain number that is mostly zero.
-inline void sincos_of(double x, double& s, double& c) {
-  if (x == 0.0) {
-    s = 0.0;
-    c = 1.0;
-  } else {
-    sincos(x, s, c);
-  }
-}
+// The sine or cosine of x, by its value f and its derivative there.
+inline double function_of(double, double f, double) { return f; }
 template <class D>
-void sincos_of(const D& x, D& s, D& c) {
-  sincos(x, s, c);
+D function_of(const D& x, double f, double df) {
+  return x.chain(f, df);
 }
 }  // namespace detail
 
 // C: coefficients in the model's axes, measured ones included. u: a row of inputs.
-template <Axes axes, class D, class L, class M>
-inline void flight_equations(const MotionState<L, M>& x, const std::array<D, kCoefficients>& C,
+template <Axes axes, class D, class L, class M, class P>
+inline void flight_equations(const MotionState<L, M, P>& x, const std::array<D, kCoefficients>& C,
                              const double* u, const MeasuredManeuver& m, MotionRates<D>& out) {
   constexpr bool longitudinal = axes != Axes::lateral, lateral = axes != Axes::longitudinal;
-  L sa, ca, st, ct;
-  M sb, cb, sf, cf;
-  detail::sincos_of(x.alpha, sa, ca);
-  detail::sincos_of(x.theta, st, ct);
-  detail::sincos_of(x.beta, sb, cb);
-  detail::sincos_of(x.phi, sf, cf);
+  using Angles = Lanes<double, 4>;
+  Angles s, c;
+  const double angles[4] = {value_of(x.alpha), value_of(x.theta), value_of(x.beta),
+                            value_of(x.phi)};
+  sincos(Angles::from([&angles](int i) { return angles[i]; }), s, c);
+  const L sa = detail::function_of(x.alpha, s[0], c[0]),
+          ca = detail::function_of(x.alpha, c[0], -s[0]);
+  const P st = detail::function_of(x.theta, s[1], c[1]),
+          ct = detail::function_of(x.theta, c[1], -s[1]);
+  const M sb = detail::function_of(x.beta, s[2], c[2]),
+          cb = detail::function_of(x.beta, c[2], -s[2]);
+  const M sf = detail::function_of(x.phi, s[3], c[3]), cf = detail::function_of(x.phi, c[3], -s[3]);
 
   D CX = C[0], CZ = C[2];
   if (m.stability_axes) {
@@ -65,21 +65,24 @@ inline void flight_equations(const MotionState<L, M>& x, const std::array<D, kCo
   const D Fx = pressure_area * CX, Fy = pressure_area * C[1], Fz = pressure_area * CZ;
   const double per_mass = 1.0 / m.mass;
   out.ax = (Fx + u[kInForce]) * per_mass;
-  out.ay = (Fy + u[kInForce + 1]) * per_mass;
   out.az = (Fz + u[kInForce + 2]) * per_mass;
-
   const D fx = out.ax - m.gravity * st;
-  const D fy = out.ay + m.gravity * (ct * sf);
   const D fz = out.az + m.gravity * (ct * cf);
   const D ahead = fx * ca + fz * sa;  // along the airspeed's projection on the plane of symmetry
 
-  // Moment about the center of gravity, less w x (J w). A motion in the plane of symmetry, whose
-  // lateral variables are plain zeros, leaves most of it out.
+  // A motion in the plane of symmetry, whose lateral variables are plain zeros, leaves most out.
   bool turning = true, sideways = true;
   if constexpr (axes == Axes::longitudinal) {
     turning = x.p != 0.0 || x.r != 0.0;
     sideways = x.beta != 0.0;
   }
+  D fy(0.0);
+  if (sideways) {
+    out.ay = (Fy + u[kInForce + 1]) * per_mass;
+    fy = out.ay + m.gravity * (ct * sf);
+  }
+
+  // Moment about the center of gravity, less w x (J w).
   D Mx, My, Mz;
   if constexpr (lateral) {
     const L pressure_span = m.b * pressure_area;
@@ -112,11 +115,11 @@ inline void flight_equations(const MotionState<L, M>& x, const std::array<D, kCo
       out.rate[kMotionV] += fy * sb;
       out.rate[kMotionAlpha] -= D((sb / cb) * (x.p * ca + x.r * sa));
     }
-    out.rate[kMotionTheta] = D(0.0) + x.q * cf - x.r * sf;
+    out.rate[kMotionTheta] = D(x.q * cf - x.r * sf);
   }
   if constexpr (lateral) {
     out.rate[kMotionBeta] = (fy * cb - ahead * sb) / x.V + x.p * sa - x.r * ca;
-    out.rate[kMotionPhi] = D(0.0) + x.p + (st / ct) * (x.q * sf + x.r * cf);
+    out.rate[kMotionPhi] = D(x.p) + (st / ct) * (x.q * sf + x.r * cf);
   }
   const Mat3<double>& I = m.inertia_inverse;
   if constexpr (axes == Axes::six) {

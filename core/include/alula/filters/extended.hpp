@@ -3,7 +3,7 @@
 // outputs by dual numbers, readings taken up one after another with the Jacobian of the prediction
 // (which equals the batch update). Source: Dittrich 2016, Eq. (3.22) to (3.26).
 #include <alula/filters/careful_update.hpp>
-#include <alula/filters/path_model.hpp>
+#include <alula/filters/path_jacobians.hpp>
 #include <alula/math/cholesky.hpp>
 #include <cstring>
 #include <limits>

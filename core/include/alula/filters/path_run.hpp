@@ -1,7 +1,7 @@
 #pragma once
 // A filter over a whole record, and the Rauch-Tung-Striebel smoother back over it.
 // Storage is the caller's; nothing is allocated. Rauch, Tung, Striebel 1965.
-#include <alula/filters/path_model.hpp>
+#include <alula/filters/path_jacobians.hpp>
 #include <alula/math/cholesky.hpp>
 
 namespace alula {

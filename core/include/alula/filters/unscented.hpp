@@ -4,7 +4,8 @@
 // Source: van den Hoek 2017, Eq. (10) to (21); center weights as Julier and Uhlmann 2004,
 // covariances about the predicted means.
 #include <alula/filters/careful_update.hpp>
-#include <alula/filters/path_model.hpp>
+#include <alula/filters/path_jacobians.hpp>
+#include <alula/filters/sigma_points.hpp>
 #include <alula/math/cholesky.hpp>
 #include <limits>
 
@@ -161,40 +162,6 @@ class Unscented {
     for (int i = 0; i < count; ++i) state[i] = L(x[i]) + L(sign) * L::load(&spread_[i][b]);
   }
 
-  // Turns the values of all slots of one row into deviations from their mean, which it returns.
-  // `middle` is the mean point's value; slots that repeat it add nothing. `difference` gets the
-  // weighted differences of opposite points.
-  static T center(T* row, T middle, int n, T* difference) {
-    const T wi = T(0.5) / T(n), weight = wi * std::sqrt(T(n));
-    L total(T(0));  // of small differences, which keep their digits
-    for (int k = 0; k < 2 * R; k += W) total += L::load(row + k) - L(middle);
-    const T mean = middle + wi * sum(total);
-    for (int k = 0; k < R; k += W) {
-      const L plus = L::load(row + k), minus = L::load(row + R + k);
-      (L(weight) * (plus - minus)).store(difference + k);
-      (plus - L(mean)).store(row + k);
-      (minus - L(mean)).store(row + R + k);
-    }
-    return mean;
-  }
-
-  // out[j] for j in [from, count): covariance of rows `from` and j of deviations. The sums run
-  // over all slots; those that repeat the mean are more than the mean's weight of 2 by a known
-  // number. `middle` is the deviation of the mean point.
-  static void products(const T (*rows)[2 * R], int from, int count, int n, const T* middle,
-                       T* out) {
-    const T wi = T(0.5) / T(n), mean_weight = T(2) - wi * T(2 * (R - n));
-    const int last = count - 1;
-    for (int j = from; j < count; j += 4) {
-      T s[4];
-      dot4<2 * R>(rows[from], rows[j], rows[j + 1 < last ? j + 1 : last],
-                  rows[j + 2 < last ? j + 2 : last], rows[j + 3 < last ? j + 3 : last], s);
-      for (int k = 0; k < 4 && j + k < count; ++k)
-        out[j + k] = wi * s[k] + mean_weight * middle[from] * middle[j + k];
-    }
-  }
-
- private:
   template <int N>
   bool predict(const PathModel<T>& model, const T* u0, const T* u1, T dt,
                const T (*Q)[kMotionStates]);
@@ -217,7 +184,7 @@ bool Unscented<T, R>::propagate(const PathModel<T>& model, const T* u0, const T*
   for (int i = 0; i < N; ++i) {
     const T value = X_[i][n];
     for (int b = n; b < R; ++b) X_[i][b] = X_[i][R + b] = value;
-    x[i] = center(X_[i], value, n, D_[i]);
+    x[i] = center_points<R>(X_[i], value, n, D_[i]);
     middle[i] = value - x[i];
     if (!(std::abs(x[i]) < T(1e30))) return false;
   }
@@ -235,7 +202,7 @@ bool Unscented<T, R>::predict(const PathModel<T>& model, const T* u0, const T* u
     T* row = P[i];
     clear<R>(row);
     for (int j = 0; j < model.dynamic; ++j) add_scaled_from<R>(j > N ? j : N, row, D_[i][j], U_[j]);
-    products(X_, i, N, n, middle, row);
+    point_products<R>(X_, i, N, n, middle, row);
     if (i < kMotionStates)
       for (int j = i; j < kMotionStates; ++j) row[j] += Q[i][j];
     // The next points must differ from the mean: no variance below the last digit of the state.
@@ -263,14 +230,14 @@ void Unscented<T, R>::sense(const PathModel<T>& model, const T* u, const T* z, S
   for (int s = 0; s < ny; ++s) {
     const T value = Y_[s][n];
     for (int b = n; b < R; ++b) Y_[s][b] = Y_[s][R + b] = value;
-    const T mean = center(Y_[s], value, n, DY_[s]);
+    const T mean = center_points<R>(Y_[s], value, n, DY_[s]);
     sensed.middle[s] = value - mean;
     sensed.e[s] = wrapped(model.sensors[present[s]].quantity, z[present[s]] - mean);
     clear<R>(C_[s]);
     for (int j = 0; j < n; ++j) add_scaled_from<R>(j, C_[s], DY_[s][j], U_[j]);
   }
   for (int s = 0; s < ny; ++s) {
-    products(Y_, s, ny, n, sensed.middle, sensed.S[s]);
+    point_products<R>(Y_, s, ny, n, sensed.middle, sensed.S[s]);
     const T variance = model.sensors[present[s]].variance;
     sensed.close = sensed.close || !(variance > T(1e-6) * sensed.S[s][s]);
     sensed.S[s][s] += variance;

@@ -1,5 +1,7 @@
 #pragma once
-// Forward-mode derivatives: a value with its slopes along N directions, exact to rounding.
+// Forward-mode derivatives: a value with its slopes along N directions, exact to rounding. Duals of
+// fewer directions mix with those of more: their directions are the first ones, and along the
+// others they do not change.
 #include <alula/math/lanes.hpp>
 #include <cmath>
 #include <type_traits>
@@ -19,6 +21,14 @@ struct Dual {
   Dual() = default;
   Dual(T v) : value(v) {
     for (int i = 0; i < kBlocks; ++i) slope[i] = Block(T(0));
+  }
+
+  // The same along more directions.
+  template <int M>
+    requires(M < N)
+  Dual(const Dual<T, M>& a) : value(a.value) {
+    static_assert(Dual<T, M>::kWidth == kWidth);
+    for (int i = 0; i < kBlocks; ++i) slope[i] = i < a.kBlocks ? a.slope[i] : Block(T(0));
   }
 
   // A variable: slope one along its own direction.
@@ -49,37 +59,33 @@ struct Dual {
     for (int i = 0; i < kBlocks; ++i) r.slope[i] = factor * slope[i];
     return r;
   }
-  // Likewise f(a, b), by both partial derivatives.
-  static Dual chain(T f, T da, const Dual& a, T db, const Dual& b) {
-    Dual r;
-    r.value = f;
-    const Block fa(da), fb(db);
-    for (int i = 0; i < kBlocks; ++i) r.slope[i] = fa * a.slope[i] + fb * b.slope[i];
-    return r;
-  }
 
-  Dual& operator+=(const Dual& b) {
+  template <int M>
+  Dual& operator+=(const Dual<T, M>& b) {
     value += b.value;
-    for (int i = 0; i < kBlocks; ++i) slope[i] += b.slope[i];
+    for (int i = 0; i < b.kBlocks; ++i) slope[i] += b.slope[i];
     return *this;
   }
-  Dual& operator-=(const Dual& b) {
+  template <int M>
+  Dual& operator-=(const Dual<T, M>& b) {
     value -= b.value;
-    for (int i = 0; i < kBlocks; ++i) slope[i] -= b.slope[i];
+    for (int i = 0; i < b.kBlocks; ++i) slope[i] -= b.slope[i];
     return *this;
   }
-  Dual& operator*=(const Dual& b) { return *this = *this * b; }
+  Dual& operator+=(T b) {
+    value += b;
+    return *this;
+  }
+  Dual& operator-=(T b) {
+    value -= b;
+    return *this;
+  }
+  template <class B>
+  Dual& operator*=(const B& b) {
+    return *this = *this * b;
+  }
 
-  friend Dual operator+(Dual a, const Dual& b) { return a += b; }
-  friend Dual operator-(Dual a, const Dual& b) { return a -= b; }
   friend Dual operator-(const Dual& a) { return a.chain(-a.value, T(-1)); }
-  friend Dual operator*(const Dual& a, const Dual& b) {
-    return chain(a.value * b.value, b.value, a, a.value, b);
-  }
-  friend Dual operator/(const Dual& a, const Dual& b) {
-    const T inverse = T(1) / b.value, quotient = a.value * inverse;
-    return chain(quotient, inverse, a, -quotient * inverse, b);
-  }
 
   // With plain numbers, which have no slopes.
   friend Dual operator+(Dual a, T b) {
@@ -125,11 +131,48 @@ struct Dual {
   friend Dual asin(const Dual& a) {
     return a.chain(std::asin(a.value), T(1) / std::sqrt(T(1) - a.value * a.value));
   }
-  friend Dual atan2(const Dual& y, const Dual& x) {
-    const T k = T(1) / (x.value * x.value + y.value * y.value);
-    return chain(std::atan2(y.value, x.value), x.value * k, y, -y.value * k, x);
-  }
 };
+
+// f(a, b) by the chain rule: its value and both partial derivatives.
+template <class T, int N, int M>
+inline auto chain(T f, T da, const Dual<T, N>& a, T db, const Dual<T, M>& b) {
+  using R = Dual<T, (N > M ? N : M)>;
+  static_assert(a.kWidth == R::kWidth && b.kWidth == R::kWidth);
+  R r;
+  r.value = f;
+  const typename R::Block fa(da), fb(db);
+  for (int i = 0; i < R::kBlocks; ++i)
+    r.slope[i] = i >= a.kBlocks   ? fb * b.slope[i]
+                 : i >= b.kBlocks ? fa * a.slope[i]
+                                  : fa * a.slope[i] + fb * b.slope[i];
+  return r;
+}
+
+template <class T, int N, int M>
+inline auto operator+(const Dual<T, N>& a, const Dual<T, M>& b) {
+  if constexpr (N >= M)
+    return Dual<T, N>(a) += b;
+  else
+    return Dual<T, M>(b) += a;
+}
+template <class T, int N, int M>
+inline auto operator-(const Dual<T, N>& a, const Dual<T, M>& b) {
+  return Dual<T, (N > M ? N : M)>(a) -= b;
+}
+template <class T, int N, int M>
+inline auto operator*(const Dual<T, N>& a, const Dual<T, M>& b) {
+  return chain(a.value * b.value, b.value, a, a.value, b);
+}
+template <class T, int N, int M>
+inline auto operator/(const Dual<T, N>& a, const Dual<T, M>& b) {
+  const T inverse = T(1) / b.value, quotient = a.value * inverse;
+  return chain(quotient, inverse, a, -quotient * inverse, b);
+}
+template <class T, int N>
+inline Dual<T, N> atan2(const Dual<T, N>& y, const Dual<T, N>& x) {
+  const T k = T(1) / (x.value * x.value + y.value * y.value);
+  return chain(std::atan2(y.value, x.value), x.value * k, y, -y.value * k, x);
+}
 
 template <class T>
 constexpr T value_of(const T& x) {

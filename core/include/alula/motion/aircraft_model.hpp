@@ -29,6 +29,7 @@ struct AircraftModel {
   std::array<T, kMaxTerms> values{};
   TermRows<T> rows{};  // of table and values, for speed; empty: they are read themselves
   const Lookup<T>* lookups = nullptr;  // the tables that the steps name; the caller's
+  bool washed = false;                 // whether the table asks for the slipstream; set by prepare
   bool stalls = false;
   Stall<T> stall{};
 
@@ -69,6 +70,7 @@ template <class T>
 void prepare(AircraftModel<T>& a) {
   a.layout = layout_of(a);
   a.rows = term_rows(a.table, a.values.data());
+  a.washed = uses(a.table, kWash);
 }
 
 }  // namespace alula

@@ -55,10 +55,36 @@ void add_stall(const FlightState<S>& x, const AircraftModel<T>& a, const S& sine
   C[5] += more.Cn;
 }
 
-// Adds the aerodynamic force and moment.
+// What the slipstream of the first propeller has more of axial speed than the free stream, over V;
+// 0 where there is no propeller. Pusztai 2018, Eq. (2.10); where the blades brake it is left a
+// fifth of the axial speed, his lowest ratio, and in flow from behind the propeller blows as at
+// rest. w: rates as the engines take them.
+template <class S, class T>
+S wash(const FlightState<S>& x, const AircraftModel<T>& a, const Vec3<S>& v_air, const Vec3<S>& w,
+       const S& density, const S& V) {
+  using std::sqrt;
+  constexpr double kPi = 3.14159265358979323846;
+  for (int i = 0; i < a.engines.size(); ++i) {
+    const Engine<T>& e = a.engines[i];
+    if (!has_propeller(e.kind)) continue;
+    const S& omega = x[a.layout.engine[i]];
+    const S u0 = dot(v_air + cross(w, e.point), e.direction);
+    const S ahead = select(value_of(u0) > T(0), u0, S(0));
+    const T R = T(0.5) * e.propeller.diameter;
+    const S thrust = propeller_loads(e.propeller, omega, u0, density).thrust;
+    const S square = ahead * ahead + (T(2.0 / kPi) / (R * R)) * thrust / density;
+    const S least = T(0.04) * ahead * ahead;
+    const auto blows = value_of(square) > value_of(least) + T(1e-9);
+    const S U_i = select(blows, S(sqrt(select(blows, square, S(1)))), S(T(0.2) * ahead));
+    return (U_i - u0) / V;
+  }
+  return S(0);
+}
+
+// Adds the aerodynamic force and moment. w_inertial: rates as the engines take them.
 template <class S, class T>
 void add_aerodynamics(const FlightState<S>& x, const FlightInput<S>& u, const AircraftModel<T>& a,
-                      Loads<S>& out) {
+                      const Vec3<S>& w_inertial, Loads<S>& out) {
   using std::sqrt;
   const Vec3<S>&v = out.v_air, &w = out.w_air;
   const S speed_squared = dot(v, v);
@@ -84,6 +110,7 @@ void add_aerodynamics(const FlightState<S>& x, const FlightInput<S>& u, const Ai
   slots[kRhat] = w.z * span;
   for (int i = 0; i < kControls; ++i) slots[kDe + i] = control(x, u, a, i);
   slots[kMach] = out.mach;
+  slots[kWash] = a.washed ? wash(x, a, v, w_inertial, out.air.density, out.flow.V) : S(0);
   fill_slots(a.table, slots, a.lookups,
              [&](const S* s) { return coefficient(a.table, a.values.data(), s, kLift); });
   auto& C = out.coefficients;
@@ -152,7 +179,7 @@ Loads<S> loads(const FlightState<S>& x, const FlightInput<S>& u, const AircraftM
   out.v_air = v - at.R_BN * wind_at(wind, at.height) - gust;
   out.w_air = w - at.earth_rate - gust_rates;
   out.force = out.moment = {S(0), S(0), S(0)};
-  add_aerodynamics(x, u, a, out);
+  add_aerodynamics(x, u, a, w, out);
   add_engines(x, u, a, w, at.height, out);
   return out;
 }

@@ -1,0 +1,136 @@
+// The vortex lattice, and its factorization alone for benchmarks.
+#include <alula/host/vortex_lattice.hpp>
+#include <ctime>
+
+#include "arrays.hpp"
+#include "bind.hpp"
+
+namespace {
+
+using namespace alula::lattice;
+using Result = nb::typed<nb::dict, nb::str, nb::any>;
+using Integers = nb::ndarray<const std::int32_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+
+Points points(Matrix from, std::size_t rows, const char* what) {
+  if (from.shape(0) != rows || from.shape(1) != 3) throw nb::value_error(what);
+  return Eigen::Map<const Points>(from.data(), 3, static_cast<Eigen::Index>(rows));
+}
+
+std::vector<int> integers(Integers from, std::size_t size, int below, const char* what) {
+  std::vector<int> out(from.data(), from.data() + from.shape(0));
+  bool good = out.size() == size;
+  for (int i : out) good = good && i >= 0 && i < below;
+  if (!good) throw nb::value_error(what);
+  return out;
+}
+
+// Row-major copies of what Eigen holds by columns.
+template <class M>
+auto transposed(const M& m) {
+  Array<double> out({static_cast<int>(m.cols()), static_cast<int>(m.rows())});
+  Eigen::Map<MatrixXd>(out.data(), m.rows(), m.cols()) = m;
+  return out.numpy();
+}
+
+Result vortex_lattice(Matrix vertices, Integers row_start, Integers row_surface, Matrix trailing,
+                      Integers row_trailing, Matrix control, Matrix middle, Matrix normal,
+                      Cube normal_rate, Vector parity, Integers mirror, int right, int center,
+                      Integers strip, Matrix strip_first, Matrix strip_last, Matrix strip_middle,
+                      double alpha, double beta, double mach, Vector rate, Vector point,
+                      Vector reference, double core, bool turning) {
+  Lattice a;
+  const std::size_t n = control.shape(0), strips = strip_first.shape(0);
+  if (n < 1 || n > static_cast<std::size_t>(kMaxPanels))
+    throw nb::value_error("panels: none, or more than LATTICE_PANELS");
+  if (right < 0 || center < 0 || static_cast<std::size_t>(2 * right + center) != n)
+    throw nb::value_error("right, center: 2 right + center must be the panels");
+  const std::size_t rows = row_surface.shape(0);
+  a.vertices = points(vertices, n + rows, "vertices: expected (panels + rows, 3)");
+  a.row_start = integers(row_start, rows + 1, static_cast<int>(n + rows) + 1, "row_start");
+  for (std::size_t r = 0; r < rows; ++r)
+    if (a.row_start[r] + 2 > a.row_start[r + 1]) throw nb::value_error("row_start: an empty row");
+  if (a.row_start[0] != 0 || a.row_start[rows] != static_cast<int>(n + rows))
+    throw nb::value_error("row_start: the rows must hold all vertices");
+  a.row_surface = integers(row_surface, rows, static_cast<int>(rows), "row_surface");
+  a.trailing = points(trailing, trailing.shape(0), "trailing: expected (edges, 3)");
+  a.row_trailing =
+      integers(row_trailing, rows, static_cast<int>(trailing.shape(0)), "row_trailing");
+  for (std::size_t r = 0; r < rows; ++r)
+    if (a.row_trailing[r] + a.row_start[r + 1] - a.row_start[r] >
+        static_cast<int>(trailing.shape(0)))
+      throw nb::value_error("row_trailing: a row beyond the last edge");
+  a.control = points(control, n, "control: expected (panels, 3)");
+  a.middle = points(middle, n, "middle: expected (panels, 3)");
+  a.normal = points(normal, n, "normal: expected (panels, 3)");
+  if (normal_rate.shape(1) != n || normal_rate.shape(2) != 3 ||
+      parity.shape(0) != normal_rate.shape(0))
+    throw nb::value_error("normal_rate, parity: expected (controls, panels, 3) and (controls,)");
+  for (std::size_t k = 0; k < normal_rate.shape(0); ++k) {
+    a.normal_rate.push_back(
+        Eigen::Map<const Points>(normal_rate.data() + 3 * n * k, 3, static_cast<Eigen::Index>(n)));
+    a.parity.push_back(parity(k) < 0.0 ? -1 : 1);
+  }
+  a.right = right, a.center = center;
+  a.mirror = integers(mirror, static_cast<std::size_t>(right), static_cast<int>(n), "mirror");
+  for (int i : a.mirror)
+    if (i < a.solved()) throw nb::value_error("mirror: images must follow the solved panels");
+  a.strip = integers(strip, n, static_cast<int>(strips), "strip");
+  a.strip_first = points(strip_first, strips, "strip_first: expected (strips, 3)");
+  a.strip_last = points(strip_last, strips, "strip_last: expected (strips, 3)");
+  a.strip_middle = points(strip_middle, strips, "strip_middle: expected (strips, 3)");
+  Condition at;
+  const auto three = [](Vector v, const char* what) {
+    const auto x = vec3(v, what);
+    return Vector3d(x.x, x.y, x.z);
+  };
+  const Vector3d sizes = three(reference, "reference: expected S, b, c");
+  at.alpha = alpha, at.beta = beta, at.mach = mach, at.core = core, at.turning = turning;
+  at.rate = three(rate, "rate: expected phat, qhat, rhat");
+  at.point = three(point, "point: expected 3 numbers");
+  at.S = sizes[0], at.b = sizes[1], at.c = sizes[2];
+  if (!(mach >= 0.0 && mach < 1.0)) throw nb::value_error("mach: expected 0 to below 1");
+  Loads loads;
+  {
+    nb::gil_scoped_release release;
+    loads = solve(a, at);
+  }
+  Result out;
+  out["circulation"] = transposed(loads.circulation.transpose().eval());
+  out["circulation_rates"] = transposed(loads.circulation_rates);
+  out["force"] = transposed(loads.force);
+  out["coefficients"] = transposed(loads.coefficients);
+  out["derivatives"] = transposed(loads.derivatives);
+  out["strip_circulation"] = transposed(loads.wake.circulation);
+  out["strip_wash"] = transposed(loads.wake.wash);
+  out["wake_drag"] = transposed(loads.wake.drag);
+  return out;
+}
+
+// Processor time of the factorization alone of a full matrix, as the lattice does it.
+double factor_time(int n) {
+  if (n < 1 || n > kMaxPanels) throw nb::value_error("n: expected 1 to LATTICE_PANELS");
+  nb::gil_scoped_release release;
+  MatrixXd A = MatrixXd::Random(n, n);
+  A.diagonal().array() += static_cast<double>(n);
+  const std::clock_t begin = std::clock();
+  const Eigen::PartialPivLU<Eigen::Ref<MatrixXd>> lu(A);
+  const std::clock_t end = std::clock();
+  return static_cast<double>(end - begin) / CLOCKS_PER_SEC;
+}
+
+}  // namespace
+
+void bind_vortex_lattice(nb::module_& m) {
+  m.attr("LATTICE_PANELS") = kMaxPanels;
+  m.def("vortex_lattice", &vortex_lattice, nb::arg("vertices"), nb::arg("row_start"),
+        nb::arg("row_surface"), nb::arg("trailing"), nb::arg("row_trailing"), nb::arg("control"),
+        nb::arg("middle"), nb::arg("normal"), nb::arg("normal_rate"), nb::arg("parity"),
+        nb::arg("mirror"), nb::arg("right"), nb::arg("center"), nb::arg("strip"),
+        nb::arg("strip_first"), nb::arg("strip_last"), nb::arg("strip_middle"), nb::arg("alpha"),
+        nb::arg("beta"), nb::arg("mach"), nb::arg("rate"), nb::arg("point"), nb::arg("reference"),
+        nb::arg("core"), nb::arg("turning"),
+        "Loads of a lattice and their derivatives to alpha, beta, phat, qhat, rhat and controls, "
+        "body axes; see core/host/include/alula/host/vortex_lattice.hpp.");
+  m.def("lattice_factor_time", &factor_time, nb::arg("n"),
+        "Processor time (s) of the factorization alone of a full matrix of order n.");
+}

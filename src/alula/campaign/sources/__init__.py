@@ -1,0 +1,1 @@
+"""Derivatives from other programs and tables, brought to one convention and compared."""
