@@ -31,6 +31,8 @@ void bind_aircraft(nb::module_& m);
 void bind_recursive(nb::module_& m);
 void bind_output_error(nb::module_& m);
 void bind_asse(nb::module_& m);
+void bind_navigate(nb::module_& m);
+void bind_navigate_tools(nb::module_& m);
 void bind_vortex_lattice(nb::module_& m);
 void bind_propellers(nb::module_& m);
 void bind_strip(nb::module_& m);

@@ -14,6 +14,8 @@ NB_MODULE(ALULA_MODULE, m) {
   bind_recursive(m);
   bind_output_error(m);
   bind_asse(m);
+  bind_navigate(m);
+  bind_navigate_tools(m);
   bind_propellers(m);
   bind_strip(m);
 #ifdef ALULA_HOST

@@ -177,6 +177,7 @@ def test_python_page(tmp_path: Path, monkeypatch) -> None:
         "plan",
         "fly",
         "validate",
+        "navigate",
         "calibrate",
         "export",
         "trim",

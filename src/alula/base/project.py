@@ -232,6 +232,32 @@ class ReconstructSpec(Strict):
     sensors: dict[str, SensorSpec] = {}
 
 
+class NavigateSpec(Strict):
+    """How `alula navigate` filters a log."""
+
+    filter: Literal["joint", "pair"] = "joint"
+    field: list[float] | None = Field(
+        default=None,
+        min_length=3,
+        max_length=3,
+        description="Earth's magnetic field there: north, east, down; none: no magnetometer",
+    )
+    field_unit: str = "uT"
+    gust: float = Field(default=1.0, ge=0, description="turbulence, standard deviation, m/s")
+    gust_length: float = Field(default=200.0, gt=0, description="its scale length, m")
+    sensors: dict[str, SensorSpec] = Field(
+        default={}, description="by channel, before [reconstruct.sensors]"
+    )
+
+    @property
+    def field_si(self) -> tuple[float, float, float] | None:
+        """The field, T."""
+        if self.field is None:
+            return None
+        scale = to_si(self.field_unit, where="navigate.field_unit").scale
+        return scale * self.field[0], scale * self.field[1], scale * self.field[2]
+
+
 class IdentifySpec(Strict):
     """What is identified, and how."""
 
@@ -258,6 +284,7 @@ class Project(Strict):
     channels: dict[str, ChannelSpec] = {}
     maneuvers: list[ManeuverSpec] = []
     reconstruct: ReconstructSpec = ReconstructSpec()
+    navigate: NavigateSpec = NavigateSpec()
     identify: IdentifySpec = IdentifySpec()
 
     _path: Path = PrivateAttr(default=Path())

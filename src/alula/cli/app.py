@@ -19,6 +19,7 @@ from alula.cli.fly import fly
 from alula.cli.identify import identify
 from alula.cli.linearize import linearize
 from alula.cli.modes import modes
+from alula.cli.navigate import navigate
 from alula.cli.new import new
 from alula.cli.plan import plan
 from alula.cli.predict import predict
@@ -48,6 +49,7 @@ COMMANDS = (
     linearize,
     modes,
     validate,
+    navigate,
     propeller,
     export,
     schema,

@@ -16,6 +16,7 @@ from alula.report.html import Html, tag
 from alula.report.input import ReportInput
 from alula.report.numbers import rms
 from alula.report.sections.coefficients import group_of
+from alula.report.sections.navigation import group_of as navigation_group
 from alula.report.sections.reconstruction import misfit
 
 MOST_BYTES = 2_900_000  # of a page, which promises to stay under 3 MB
@@ -23,7 +24,7 @@ LEAST = 240  # points of a thinned figure: every fourth pixel of its width, or c
 _FRAME = 50_000  # style, scripts, head
 
 # In the order in which they are worth the room. Anchors of the page's sections are the keys.
-_PARTS = ("flown", "coefficients", "histories", "reconstruction")
+_PARTS = ("flown", "navigation", "coefficients", "histories", "reconstruction")
 
 Unit = tuple[str, str]  # (part, group)
 
@@ -56,20 +57,22 @@ def left_out(report: ReportInput, figures: FigureStore, part: str) -> Iterable[H
     every = list(dict.fromkeys(_groups(report, part)))
     missing = [g for g in every if figures.drawn is not None and g not in figures.drawn[part]]
     if missing:
-        names = [tag("code", g.removeprefix("flown ")) for g in missing]
+        names = [tag("code", g.removeprefix("flown ").removeprefix("navigation ")) for g in missing]
         yield tag(
             "p",
-            f"Plots of {len(every) - len(missing)} of {len(every)} maneuvers are drawn, so that "
-            f"the page stays under 3 MB: {_WHY[part]}. The tables hold all. Not drawn here, but by "
-            f"alula {'validate' if part == 'flown' else 'identify'} PROJECT --maneuver ID --report "
-            "FILE: ",
+            f"Plots of {len(every) - len(missing)} of {len(every)} "
+            f"{'logs' if part == 'navigation' else 'maneuvers'} are drawn, so that the page stays "
+            f"under 3 MB: {_WHY[part]}. The tables hold all. Not drawn here, but by "
+            f"alula {_COMMANDS.get(part, 'identify PROJECT --maneuver')} ID --report FILE: ",
             Html(", ".join(names[:400])),
             f" and {len(names) - 400} more." if len(names) > 400 else ".",
             class_="note lead",
         )
 
 
+_COMMANDS = {"flown": "validate PROJECT --maneuver", "navigation": "navigate PROJECT --log"}
 _WHY = {
+    "navigation": "in the order of the project",
     "flown": "in the order of the project",
     "coefficients": "first the held out ones, then those with the largest residuals",
     "histories": "in the order of the project",
@@ -117,6 +120,8 @@ def _groups(report: ReportInput, part: str) -> list[str]:
     """The part's groups of figures, those that tell most first."""
     if part == "flown" and report.validation is not None:
         return [f"flown {one.maneuver.id}" for one in report.validation.flown]
+    if part == "navigation":
+        return [navigation_group(log) for log in report.navigation]
     if part == "coefficients" and report.identification is not None:
         worst: dict[str, tuple[bool, float]] = {}
         for s in report.identification.series:

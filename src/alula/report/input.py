@@ -14,6 +14,7 @@ from alula.reconstruct.result import Reconstruction
 
 if TYPE_CHECKING:
     from alula.logs.card import LogCard
+    from alula.navigate import Navigation
     from alula.validate.reidentify import Reidentified
     from alula.validate.result import Validation
 
@@ -26,6 +27,7 @@ class ReportInput:
     cards: one per log, with its files and messages.
     provenance: what is needed to make the result again: hashes, versions, commit, instruction
     set, seed; a value may itself be a mapping. date: as it shall stand on the page.
+    navigation: by log, what the navigation filters found.
     shape: the aircraft whose geometry is drawn, where it has one.
     """
 
@@ -38,6 +40,7 @@ class ReportInput:
     reconstruction: Reconstruction | None = None
     identification: Identification | None = None
     validation: Validation | None = None
+    navigation: Mapping[str, Navigation] = field(default_factory=dict)
     reidentified: tuple[Reidentified, ...] = ()
     messages: tuple[Message, ...] = ()
     provenance: Mapping[str, Any] = field(default_factory=dict)

@@ -15,6 +15,7 @@ from alula.report.sections.correlation import correlation
 from alula.report.sections.histories import histories
 from alula.report.sections.log_card import log_cards
 from alula.report.sections.maneuvers import maneuvers
+from alula.report.sections.navigation import navigation
 from alula.report.sections.notes import messages, provenance
 from alula.report.sections.parameters import parameters
 from alula.report.sections.reconstruction import reconstruction
@@ -90,6 +91,10 @@ def _sections(report: ReportInput, figures: FigureStore) -> list[tuple[str, str,
         found.append(("log", "Log card", log_cards(report)))
     if report.maneuvers:
         found.append(("maneuvers", "Maneuvers", maneuvers(report)))
+    if report.navigation:
+        figures.part = "navigation"
+        filtered = navigation(report.navigation, figures)
+        found.append(("navigation", "Navigation: attitude and wind", filtered))
     if report.reconstruction is not None:
         figures.part = "reconstruction"
         content = reconstruction(report.reconstruction, figures)
@@ -116,7 +121,7 @@ def _sections(report: ReportInput, figures: FigureStore) -> list[tuple[str, str,
     found.append(("messages", "Messages", messages(report)))
     found.append(("provenance", "Provenance", provenance(report)))
     for k, (key, title, content) in enumerate(found):
-        if key in ("flown", "reconstruction", "coefficients", "histories"):
+        if key in ("flown", "navigation", "reconstruction", "coefficients", "histories"):
             found[k] = (key, title, join([_HOW_TO, *left_out(report, figures, key), content]))
     return found
 

@@ -62,6 +62,10 @@ def verdict(report: ReportInput) -> tuple[str, str]:
 
 def _without_model(report: ReportInput) -> tuple[str, str]:
     """The verdict of a project that asks for no model, or did not come so far."""
+    if report.navigation:
+        if any(m.code in ("sensor_refused", "implausible_wind") for m in report.messages):
+            return "bad", "The sensors contradict each other: see the messages"
+        return "good", "The logs are navigated; no model was asked for"
     if report.reconstruction is None or not report.reconstruction.segments:
         return "caution", "No model was identified: this page shows the data only"
     unseen = [c.name for c in report.reconstruction.constants if not c.observable]
