@@ -451,6 +451,226 @@ def asse_seconds(t: Annotated[NDArray[numpy.float64], dict(shape=(None,), order=
     its airspeed (double, float), over a recording as asse_window takes it.
     """
 
+NAVIGATE_KINDS: str = 'position velocity field height V alpha beta'
+
+NAVIGATE_TAKEN: str = ...
+
+class JointNoise:
+    """Noise and constants of the joint filter, SI."""
+
+    def __init__(self) -> None: ...
+
+    @property
+    def gyro(self) -> float: ...
+
+    @gyro.setter
+    def gyro(self, arg: float, /) -> None: ...
+
+    @property
+    def gyro_walk(self) -> float: ...
+
+    @gyro_walk.setter
+    def gyro_walk(self, arg: float, /) -> None: ...
+
+    @property
+    def accelerometer(self) -> float: ...
+
+    @accelerometer.setter
+    def accelerometer(self, arg: float, /) -> None: ...
+
+    @property
+    def accelerometer_walk(self) -> float: ...
+
+    @accelerometer_walk.setter
+    def accelerometer_walk(self, arg: float, /) -> None: ...
+
+    @property
+    def wind_walk(self) -> float: ...
+
+    @wind_walk.setter
+    def wind_walk(self, arg: float, /) -> None: ...
+
+    @property
+    def height_walk(self) -> float: ...
+
+    @height_walk.setter
+    def height_walk(self, arg: float, /) -> None: ...
+
+    @property
+    def gravity(self) -> float: ...
+
+    @gravity.setter
+    def gravity(self, arg: float, /) -> None: ...
+
+    @property
+    def least_airspeed(self) -> float: ...
+
+    @least_airspeed.setter
+    def least_airspeed(self, arg: float, /) -> None: ...
+
+    @property
+    def longest_step(self) -> float: ...
+
+    @longest_step.setter
+    def longest_step(self, arg: float, /) -> None: ...
+
+    @property
+    def patience(self) -> float: ...
+
+    @patience.setter
+    def patience(self, arg: float, /) -> None: ...
+
+    @property
+    def gust(self) -> tuple[float, float, float]: ...
+
+    @gust.setter
+    def gust(self, arg: tuple[float, float, float], /) -> None: ...
+
+    @property
+    def gust_length(self) -> tuple[float, float, float]: ...
+
+    @gust_length.setter
+    def gust_length(self, arg: tuple[float, float, float], /) -> None: ...
+
+    @property
+    def field(self) -> tuple[float, float, float]: ...
+
+    @field.setter
+    def field(self, arg: tuple[float, float, float], /) -> None: ...
+
+    @property
+    def air_sensor(self) -> tuple[float, float, float]: ...
+
+    @air_sensor.setter
+    def air_sensor(self, arg: tuple[float, float, float], /) -> None: ...
+
+    @property
+    def antenna(self) -> tuple[float, float, float]: ...
+
+    @antenna.setter
+    def antenna(self, arg: tuple[float, float, float], /) -> None: ...
+
+class AttitudeNoise:
+    """Noise of the attitude filter, SI."""
+
+    def __init__(self) -> None: ...
+
+    @property
+    def gyro(self) -> float: ...
+
+    @gyro.setter
+    def gyro(self, arg: float, /) -> None: ...
+
+    @property
+    def gyro_walk(self) -> float: ...
+
+    @gyro_walk.setter
+    def gyro_walk(self, arg: float, /) -> None: ...
+
+    @property
+    def longest_step(self) -> float: ...
+
+    @longest_step.setter
+    def longest_step(self, arg: float, /) -> None: ...
+
+    @property
+    def patience(self) -> float: ...
+
+    @patience.setter
+    def patience(self, arg: float, /) -> None: ...
+
+    @property
+    def measured(self) -> tuple[float, float, float]: ...
+
+    @measured.setter
+    def measured(self, arg: tuple[float, float, float], /) -> None: ...
+
+class PositionNoise:
+    """Noise of the position filter, SI."""
+
+    def __init__(self) -> None: ...
+
+    @property
+    def accelerometer(self) -> float: ...
+
+    @accelerometer.setter
+    def accelerometer(self, arg: float, /) -> None: ...
+
+    @property
+    def accelerometer_walk(self) -> float: ...
+
+    @accelerometer_walk.setter
+    def accelerometer_walk(self, arg: float, /) -> None: ...
+
+    @property
+    def gravity(self) -> float: ...
+
+    @gravity.setter
+    def gravity(self, arg: float, /) -> None: ...
+
+    @property
+    def longest_step(self) -> float: ...
+
+    @longest_step.setter
+    def longest_step(self, arg: float, /) -> None: ...
+
+    @property
+    def patience(self) -> float: ...
+
+    @patience.setter
+    def patience(self, arg: float, /) -> None: ...
+
+def navigate_joint(noise: JointNoise, start_state: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], start_sigma: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], t0: float, t: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], rate: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], force: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], events: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], every: int = 1) -> dict[str, Any]:
+    """
+    The joint filter over t (n,), rate and force (n, 3), and events (m, 9) in the order of
+    their arrival: kind, t of arrival, t measured, z (3), sigma (3). start_state: quaternion,
+    velocity, position, wind (13,); start_sigma: tilt, heading, velocity, position, gyro bias,
+    accelerometer bias, wind, height bias. Every so many samples: t (k,), x (k, 26),
+    covariance (k, 22, 22); of each event what became of it, nis, deviation of innovations.
+    """
+
+def navigate_pair(attitude: AttitudeNoise, position: PositionNoise, field: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], steps: int, start_state: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], start_sigma: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], t0: float, t: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], rate: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], force: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], events: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], every: int = 1) -> dict[str, Any]:
+    """
+    Attitude and position filter in turn; as navigate_joint, with x (k, 16) and covariance
+    (k, 15, 15): turn, gyro bias, position, velocity, accelerometer bias. start_sigma: tilt,
+    heading, velocity, position, gyro bias, accelerometer bias. steps: inertial samples for one
+    step of the position filter.
+    """
+
+def navigation_step_seconds(what: str, steps: int, single: bool = False) -> float:
+    """
+    Seconds per step, mean over `steps` in one loop of the core: 'attitude', 'position',
+    'attitude_update', 'position_update', 'joint', 'joint_flight' (400 Hz with every sensor at
+    its own rate), 'joint_worst' (every sensor in every step). single: float, not double.
+    """
+
+def measured_attitude(gravity_B: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], field_B: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], field_E: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], gravity: float, out: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None:
+    """
+    Attitude from gravity and magnetic field as seen in body axes (n, 3). Writes out (n, 6):
+    phi theta psi (rad), acceleration gain, whether the heading and the whole is valid.
+    """
+
+def wind_from(velocity: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], sigma_velocity: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], q: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], sigma_turn: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], air: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], sigma_air: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], wind: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], covariance: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')]) -> None:
+    """
+    Wind (n, 3) NED, m/s, the way it blows to, with covariance (n, 3, 3), from velocity (n, 3)
+    NED, attitude q (n, 4), air (n, 3): V, alpha, beta; NaN where there is no airspeed.
+    """
+
+def air_from_wind(velocity: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], sigma_velocity: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], q: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], sigma_turn: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], wind: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], wind_covariance: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], out: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None:
+    """
+    Airspeed and flow angles without air-data sensors where the wind is known. Writes out
+    (n, 6): V, alpha, beta and their standard deviations; NaN where there is no airspeed.
+    """
+
+def power_train(motor: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], noise: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], t: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], throttle: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], speed: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], out: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None:
+    """
+    Motor speed, current and battery over t (n,) from throttle and speed readings (NaN: none).
+    motor: k_V k_T no_load_current resistance full_voltage empty_voltage capacity most_current
+    most_regenerated_current; noise: jerk, decay, sensor. Writes out (n, 9): speed,
+    acceleration, standard deviation of the speed, motor current, battery current, charge
+    drawn, voltage, share left, what became of the sample.
+    """
+
 MAX_BLADE_STATIONS: int = 64
 
 class BladeShape:
