@@ -1,18 +1,16 @@
 """A project carried the whole way: logs, reconstruction, identification.
 
-Validation is in `alula.campaign.validate`: it loads the simulator.
+Validation is in `alula.campaign.validate`, prediction in `alula.campaign.predict`, comparison in
+`alula.campaign.compare`: they load what this does not need.
 """
 
 from alula.campaign.check import Checked, check_project
-from alula.campaign.compare import Comparison, run_comparison
 from alula.campaign.job import Job, report_of, run_project
 
 __all__ = [
     "Checked",
-    "Comparison",
     "Job",
     "check_project",
     "report_of",
-    "run_comparison",
     "run_project",
 ]

@@ -13,7 +13,7 @@ from alula.cli.contract import Command, JsonOption, QuietOption, SeedOption, Thr
 from alula.cli.predict import HeightOption, Method, SpeedOption
 
 if TYPE_CHECKING:
-    from alula.campaign import Comparison
+    from alula.campaign.compare import Comparison
     from alula.identify.compare import Difference, Row
 
 
@@ -72,7 +72,7 @@ def compare(
     """
     command = Command("comparison", json, seed, threads, quiet)
     with command.run():
-        from alula.campaign import run_comparison
+        from alula.campaign.compare import run_comparison
         from alula.campaign.predict import Asked
 
         alpha = None if alpha_deg is None else radians(alpha_deg)
