@@ -31,7 +31,7 @@ def test_readme_commands_exist() -> None:
     commands = [line.split() for line in lines if line.startswith("alula ")]
     assert {words[1] for words in commands} == {
         "new", "check", "identify", "modes", "plan", "fly", "validate", "export",
-        "predict", "compare",
+        "predict", "compare", "calibrate", "airdata", "navigate",
     }  # fmt: skip
     for words in commands:
         said = run(["alula", words[1], "--help"], ROOT)
