@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import base64
-import hashlib
 from collections.abc import Mapping
-from importlib.resources import files
 
 import numpy as np
 
@@ -13,6 +10,7 @@ from alula.airdata.inflight_result import InFlightCalibration, Parameter
 from alula.report.html import Html, join, table, tag
 from alula.report.numbers import MISSING, interval, number, plus_minus
 from alula.report.pictures import interval_picture, mark
+from alula.report.plain_page import plain_page
 
 MEANING = {
     "k_V": "airspeed scale", "k_alpha": "upwash at the alpha vane", "b_alpha": "alpha vane, bias",
@@ -29,9 +27,6 @@ _MARKS = {"ok": ("good", "ok"), "weak": ("caution", "weak"),
 
 def air_data_page(name: str, found: Mapping[str, InFlightCalibration]) -> str:
     """The page as HTML, a section for each log; the same input gives the same text."""
-    style = files("alula.report").joinpath("page.css").read_text(encoding="utf-8")
-    digest = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode()
-    policy = f"default-src 'none'; style-src 'sha256-{digest}'; base-uri 'none'; form-action 'none'"
     body = tag(
         "body",
         tag("a", "Skip to the report", href="#report", class_="skip"),
@@ -47,17 +42,7 @@ def air_data_page(name: str, found: Mapping[str, InFlightCalibration]) -> str:
             id="report",
         ),
     )
-    head = tag(
-        "head",
-        tag("meta", charset="utf-8"),
-        tag("meta", http_equiv="Content-Security-Policy", content=policy),
-        tag("meta", name="viewport", content="width=device-width, initial-scale=1"),
-        tag("meta", name="color-scheme", content="light dark"),
-        tag("meta", name="generator", content="Alula"),
-        tag("title", f"{name} · air data"),
-        Html(f"<style>{style}</style>"),
-    )
-    return "<!DOCTYPE html>\n" + tag("html", head, body, lang="en") + "\n"
+    return plain_page(f"{name} · air data", body)
 
 
 def air_data(found: InFlightCalibration) -> Html:

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import base64
-import hashlib
 from collections.abc import Sequence
-from importlib.resources import files
 
 from alula.navigate.calibration import AxisNoise, Calibrated, Parameter, SensorCalibration
 from alula.report.calibration_pictures import STYLE, allan_picture, clouds, length_bars
 from alula.report.html import Html, file_name, join, table, tag
 from alula.report.numbers import number, percent, plus_minus
 from alula.report.pictures import mark
+from alula.report.plain_page import plain_page
 
 FEW = 60  # vectors up to which each has bars of its own
 LEVELS = {"ok": "good", "weak": "caution", "not_identifiable": "bad"}
@@ -19,19 +17,6 @@ LEVELS = {"ok": "good", "weak": "caution", "not_identifiable": "bad"}
 
 def calibration_page(found: Calibrated) -> str:
     """The page as HTML; the same input gives the same text."""
-    style = files("alula.report").joinpath("page.css").read_text(encoding="utf-8") + STYLE
-    digest = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode()
-    policy = f"default-src 'none'; style-src 'sha256-{digest}'; base-uri 'none'; form-action 'none'"
-    head = tag(
-        "head",
-        tag("meta", charset="utf-8"),
-        tag("meta", http_equiv="Content-Security-Policy", content=policy),
-        tag("meta", name="viewport", content="width=device-width, initial-scale=1"),
-        tag("meta", name="color-scheme", content="light dark"),
-        tag("meta", name="generator", content="Alula"),
-        tag("title", f"{found.project.name} · calibration"),
-        Html(f"<style>{style}</style>"),
-    )
     parts = [_sensor(name, sensor) for name, sensor in found.sensors.items()]
     parts += [_noise(name, axes) for name, axes in found.noise.items()]
     said = [
@@ -52,7 +37,7 @@ def calibration_page(found: Calibrated) -> str:
             tag("footer", tag("p", "End of report. Made by Alula; opens offline.")),
         ),
     )
-    return "<!DOCTYPE html>\n" + tag("html", head, body, lang="en") + "\n"
+    return plain_page(f"{found.project.name} · calibration", body, STYLE)
 
 
 def _sensor(name: str, sensor: SensorCalibration) -> Html:

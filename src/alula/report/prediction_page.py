@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import base64
-import hashlib
-from importlib.resources import files
 from math import degrees
 
 from alula.predict.combine import as_flown
@@ -13,6 +10,7 @@ from alula.predict.prediction import Prediction
 from alula.report.html import Html, join, table, tag
 from alula.report.numbers import MISSING, number, percent, plus_minus
 from alula.report.pictures import mark
+from alula.report.plain_page import plain_page
 from alula.report.sections.geometry import geometry
 from alula.report.span_loads import STYLE, span_load
 
@@ -24,9 +22,6 @@ _STYLE = "td .source,td details.source{min-width:230px}"
 
 def prediction_page(found: Prediction) -> str:
     """The page as HTML; the same input gives the same text."""
-    style = files("alula.report").joinpath("page.css").read_text(encoding="utf-8") + STYLE + _STYLE
-    digest = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode()
-    policy = f"default-src 'none'; style-src 'sha256-{digest}'; base-uri 'none'; form-action 'none'"
     sections = _sections(found)
     body = tag(
         "body",
@@ -47,17 +42,7 @@ def prediction_page(found: Prediction) -> str:
             id="report",
         ),
     )
-    head = tag(
-        "head",
-        tag("meta", charset="utf-8"),
-        tag("meta", http_equiv="Content-Security-Policy", content=policy),
-        tag("meta", name="viewport", content="width=device-width, initial-scale=1"),
-        tag("meta", name="color-scheme", content="light dark"),
-        tag("meta", name="generator", content="Alula"),
-        tag("title", f"{found.aircraft.name} · prediction"),
-        Html(f"<style>{style}</style>"),
-    )
-    return "<!DOCTYPE html>\n" + tag("html", head, body, lang="en") + "\n"
+    return plain_page(f"{found.aircraft.name} · prediction", body, STYLE + _STYLE)
 
 
 def _sections(found: Prediction) -> list[tuple[str, str, Html]]:
