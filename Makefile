@@ -1,9 +1,12 @@
 # `make demo` and `make test` do all their own set-up. See README.md.
 PYTHON ?= python3
-JOBS ?= 2
+JOBS ?= $(shell getconf _NPROCESSORS_ONLN)
 VENV := .venv
 BIN := $(VENV)/bin
-STAMP := $(VENV)/.alula
+# host: the core for this machine's processor alone, in half the time. all: for others, too, as a
+# wheel has it; once built so, it stays so.
+INSTRUCTION_SETS ?= $(if $(wildcard $(VENV)/.alula-all),all,host)
+STAMP := $(VENV)/.alula-$(INSTRUCTION_SETS)
 CPP := $(shell find core bindings -name '*.hpp' -o -name '*.cpp')
 CORE := $(shell find core/include core/host bindings -name '*.hpp' -o -name '*.cpp') CMakeLists.txt pyproject.toml
 
@@ -21,10 +24,13 @@ $(BIN)/python:
 	$(BIN)/python -m pip install --quiet "scikit-build-core>=0.11" "nanobind>=2.4" "cmeel-eigen>=3.4" "cmake>=3.25" ninja
 
 # Editable, without isolation: the build tools stay in the environment, so a rebuild finds them.
-$(STAMP): $(BIN)/python $(CORE)
+$(VENV)/.alula-%: $(BIN)/python $(CORE)
 	@echo "Building the core and installing what it needs."
-	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pip install --quiet --no-build-isolation --editable ".[test]"
-	@touch $(STAMP)
+	PATH="$(CURDIR)/$(BIN):$$PATH" CMAKE_BUILD_PARALLEL_LEVEL=$(JOBS) $(BIN)/python -m pip install --quiet --no-build-isolation --editable ".[test]" \
+		--config-settings=cmake.define.ALULA_INSTRUCTION_SETS=$* \
+		--config-settings=build-dir=build/$*
+	@rm -f $(VENV)/.alula-*
+	@touch $@
 
 demo: $(STAMP)
 	@$(BIN)/python examples/demo/demo.py
@@ -32,12 +38,13 @@ demo: $(STAMP)
 test: $(STAMP)
 	$(BIN)/python -m pytest -m "not slow" --numprocesses auto --maxprocesses 8 --dist loadfile
 
-# The peer that the filters are measured against; the other peers are optional.
-bench: $(STAMP)
+# With both instruction sets. numba is the peer that the filters are measured against; the other
+# peers are optional.
+bench: $(VENV)/.alula-all
 	@$(BIN)/python -c "import numba" 2>/dev/null || $(BIN)/python -m pip install --quiet "numba>=0.60"
 	$(BIN)/python benchmarks/bench.py
 
-verify: $(STAMP)
+verify: $(VENV)/.alula-all
 	@$(BIN)/python -c "import numba" 2>/dev/null || $(BIN)/python -m pip install --quiet "numba>=0.60"
 	$(BIN)/python benchmarks/verify.py
 

@@ -33,10 +33,12 @@ BUILD = cases.ROOT / "build"
 
 
 def modules() -> list[str]:
-    """Compiled modules that this processor can run."""
-    from alula import _core
+    """Compiled modules that this processor can run, the quickest first."""
+    from alula.core import MODULES
 
-    return ["_core_v3", "_core"] if _core.has_x86_64_v3() else ["_core"]
+    if "baseline" not in MODULES:
+        raise SystemExit("This build is for this machine alone: make build INSTRUCTION_SETS=all")
+    return [module.__name__.split(".")[-1] for module in reversed(MODULES.values())]
 
 
 def allocations() -> dict[str, dict[str, Any]]:

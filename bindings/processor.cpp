@@ -1,7 +1,18 @@
-// Which instruction set this processor has, so that the right module is chosen at import.
+// Which instruction sets this module needs and this processor has, so that the right module is
+// chosen at import.
 #include "bind.hpp"
 
 void bind_processor(nb::module_& m) {
+  m.def(
+      "instruction_set",
+      [] {
+#if defined(__AVX2__)
+        return "x86-64-v3";
+#else
+        return "baseline";
+#endif
+      },
+      "What this module was compiled for: 'baseline' or 'x86-64-v3'.");
   m.def(
       "has_x86_64_v3",
       [] {

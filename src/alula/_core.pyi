@@ -108,6 +108,9 @@ def linear_filter(transition: Annotated[NDArray[numpy.float64], dict(shape=(None
     first reading; process is Lambda Q Lambda'. `done` < samples where it lost its covariance.
     """
 
+def instruction_set() -> str:
+    """What this module was compiled for: 'baseline' or 'x86-64-v3'."""
+
 def has_x86_64_v3() -> bool:
     """True where the processor executes AVX2, FMA and BMI2 (x86-64-v3)."""
 
