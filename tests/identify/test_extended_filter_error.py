@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
 from alula.base.messages import BadInput
 from alula.flight import Maneuver
 from alula.identify import Reference
-from alula.identify.extended_filter_error import FunctionModel, identify_extended_filter_error
+from alula.identify.extended_filter_error import (
+    ExtendedFilter,
+    FunctionModel,
+    identify_extended_filter_error,
+)
 from alula.identify.filter_error import identify_filter_error
 from alula.identify.flight_filter_error import STATES_OF, identify_flight_filter_error
-from alula.identify.linear_model import linear_model
-from alula.identify.linear_record import linear_record
+from alula.identify.linear_model import linear_model, sample
+from alula.identify.linear_record import Unknowns, linear_record
 from alula.identify.measured_maneuver import STATES, MeasuredManeuver
 
 DT = 0.04
@@ -32,12 +38,8 @@ def roll(seed=0, n=250):
     return model, record
 
 
-def test_agrees_with_the_linear_filter():
-    """The same model as functions: the same likelihood, but for Q by the trapezoidal rule, which
-    errs by (Lp dt)^2 / 6 = 0.2 %.
-    """
-    model, record = roll()
-    function = FunctionModel(
+def roll_function():
+    return FunctionModel(
         states=("p",),
         outputs=("p",),
         parameters=("Lp", "Lda"),
@@ -45,6 +47,36 @@ def test_agrees_with_the_linear_filter():
         output=lambda x, u, p: x + 0.0 * p[..., :1],
         size=(0.1,),
     )
+
+
+def test_inputs_run_straight_between_samples():
+    """Samples as long as the mode, an input that jumps: without noise the filter only flies,
+    as the exact sampled model does. Slopes by differences are good to 1e-9.
+    """
+    model, _ = roll()
+    t = DT * 8.0 * np.arange(40)
+    u = np.sign(np.sin(2.0 * t))
+    coarse = linear_record("a", t, {"p": 0.0 * t, "da": u}, model)
+    Lp, Lda = -3.0, -12.0
+    step = sample(model.at(np.array([Lp, Lda])), coarse.dt)
+    w = np.column_stack([u, np.ones(len(u))])
+    p = [np.array([0.1])]
+    for now, after in pairwise(w):
+        p.append(step.phi @ p[-1] + step.now @ now + step.next @ after)
+    names = Unknowns(model, [coarse], (), {}, initial=True)
+    noises = {"F_p": 1e-9, "sigma_p": 1.0}
+    first = {"Lp": Lp, "Lda": Lda, "p(0)[a]": 0.1}
+    filter_ = ExtendedFilter([roll_function()], [coarse], names, ["p"], noises, first)
+    (flown,) = filter_.run(filter_.first[None, :]) or []
+    np.testing.assert_allclose(flown.y[0, :, 0], np.array(p)[:, 0], atol=1e-7)
+
+
+def test_agrees_with_the_linear_filter():
+    """The same model as functions: the same likelihood, but for Q by the trapezoidal rule, which
+    errs by (Lp dt)^2 / 6 = 0.2 %.
+    """
+    model, record = roll()
+    function = roll_function()
     linear = identify_filter_error(model, [record], gain="varying")
     start = {"Lp": -2.0, "Lda": -8.0}
     extended = identify_extended_filter_error(function, [record], start=start)

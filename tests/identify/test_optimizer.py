@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from alula.identify.optimizer import Point, minimize, with_prior
+from alula.identify.optimizer import Point, _within, minimize, with_prior
 
 
 def rosenbrock(p, derivatives):
@@ -29,6 +29,41 @@ def test_bound_holds_and_is_named():
     assert found.at_bound == (True, False)
     # given x, the valley's floor is y = x^2
     np.testing.assert_allclose(found.value, [0.5, 0.25], atol=1e-7)
+
+
+@pytest.mark.parametrize("algorithm", ["gauss_newton", "levenberg_marquardt"])
+def test_longest_step_leaves_a_direction_that_lowers_the_cost(algorithm):
+    """Two parameters that make up for each other, minimum at (100, -98), first moved 10 at most.
+
+    Newton's step cut to (10, -98) goes uphill at any length: its slope is -29.8 + 98.
+    """
+    M, at = np.array([[1.0, 0.99], [0.99, 1.0]]), np.array([100.0, -98.0])
+
+    def valley(p, derivatives):
+        return Point(0.5 * (p - at) @ M @ (p - at), M @ (p - at), M)
+
+    largest = np.array([10.0, np.inf])
+    found = minimize(valley, np.zeros(2), algorithm=algorithm, largest=largest)
+    assert found.converged, found.why
+    assert found.iterations >= 10  # 100 in steps of 10
+    np.testing.assert_allclose(found.value, at, atol=1e-3)  # 1e-4 of the error, 7
+
+
+@pytest.mark.parametrize("damping", [0.0, 1e-3, 1.0])
+def test_step_within_limits_lowers_the_predicted_cost(damping):
+    """Random information and limits, some of them zero: never beyond a limit, never uphill."""
+    rng = np.random.default_rng(1)
+    none = np.zeros(6, dtype=bool)
+    for _ in range(300):
+        J = rng.standard_normal((8, 6)) @ np.diag(10.0 ** rng.uniform(-3, 3, 6))
+        point = Point(0.0, J.T @ rng.standard_normal(8), J.T @ J)
+        least, most = -(10.0 ** rng.uniform(-3, 1, 6)), 10.0 ** rng.uniform(-3, 1, 6)
+        i = int(rng.integers(6))  # at a bound, the gradient pointing away from it
+        least[i], most[i] = (least[i], 0.0) if point.gradient[i] > 0.0 else (0.0, most[i])
+        step = _within(point, none, least, most, damping)
+        assert (step >= least).all()
+        assert (step <= most).all()
+        assert point.gradient @ step + 0.5 * step @ point.information @ step < 0.0
 
 
 def test_prior_is_the_weighted_mean():

@@ -3,15 +3,16 @@
 The step is p <- p + M^-1 g with the Fisher information M in place of the second derivatives and
 g = -dJ/dp (Dittrich 2016, Eq. (3.60), (3.61) with errata, (3.64)); Levenberg-Marquardt adds a
 multiple of M's own diagonal (Eq. (3.65), scaled so that units do not matter: Marquardt 1963).
-Steps are halved until the cost falls. Combinations without information are not moved. The iteration
-ends by the Newton decrement: the predicted step in units of the estimate's standard errors, which
-knows no units either.
+Steps are halved until the cost falls; where a bound or a longest step cuts a parameter short, the
+others take the values best given that. Combinations without information are not moved. The
+iteration ends by the Newton decrement: the predicted step in units of the estimate's standard
+errors, which knows no units either.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -120,9 +121,9 @@ def minimize(
             why = f"converged: the next step is {decrement:.1g} standard errors"
             return _end(p, point, True, why, i, held, history)
         found = None
-        plain = np.clip(plain, -far, far)
+        least, most = np.maximum(-far, low - p), np.minimum(far, high - p)
+        step = _within(point, held, least, most, damping)
         for _ in range(HALVINGS):
-            step = np.clip(_step(point, held, damping), -far, far) if damping else plain
             trial = np.clip(p + step, low, high)
             there = likelihood(trial, False)
             if there is not None and np.isfinite(there.cost) and there.cost < point.cost:
@@ -131,8 +132,9 @@ def minimize(
                 break
             if damping:
                 damping = max(10.0 * damping, DAMPING)
+                step = _within(point, held, least, most, damping)
             else:
-                plain = 0.5 * plain
+                step = 0.5 * step
         if found is None:
             flat = 0.5 * decrement**2 < FLAT * max(1.0, abs(point.cost)) or decrement < 0.01
             why = (
@@ -153,6 +155,30 @@ def minimize(
         history.append(point.cost)
     why = f"stopped after {iterations} iterations, still {decrement:.2g} standard errors a step"
     return _end(p, point, False, why, iterations, held, history)
+
+
+def _within(point: Point, held: Flags, least: Array, most: Array, damping: float) -> Array:
+    """The step (k,) as far as it may go: least <= step <= most (k,), with zero between them.
+
+    A component that meets its limit stays there and the others go on to their minimum given that:
+    the predicted cost falls all the way. If it were merely cut off, the others would make up for a
+    movement that does not take place, and the cost may rise however short the step.
+    """
+    step = np.zeros(len(held))
+    stays = held
+    left = point.gradient
+    while not stays.all():
+        rest = _step(replace(point, gradient=left), stays, damping)
+        limit = np.where(rest > 0.0, most, least)
+        room = np.divide(limit - step, rest, out=np.full(len(rest), np.inf), where=rest != 0.0)
+        share = float(room.min())
+        if share >= 1.0:
+            return step + rest
+        step = np.where(room <= share, limit, step + share * rest)
+        stays = stays | (room <= share)
+        left = point.gradient + point.information @ step
+        left += damping * point.information.diagonal() * step
+    return step
 
 
 def _step(point: Point, held: Flags, damping: float) -> Array:
