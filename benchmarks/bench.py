@@ -23,6 +23,7 @@ for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUM
 
 sys.path.insert(0, str(Path(__file__).parent))
 import cases  # noqa: E402
+import programs  # noqa: E402
 
 # Each filter with the peer's whose estimate it computes. The iterated one has none: it is timed
 # beside the extended filter.
@@ -43,29 +44,17 @@ def modules() -> list[str]:
 
 def allocations() -> dict[str, dict[str, Any]]:
     """What the C++ benchmark counts, by module; empty where it cannot be built."""
-    folder = BUILD / "bench"
-    cmake = Path(sys.executable).with_name("cmake")
-    program = str(cmake) if cmake.exists() else "cmake"
-    configure = ["-S", cases.ROOT, "-B", folder, "-DALULA_PYTHON=OFF", "-DALULA_BENCH=ON"]
+    from alula.core import MODULES
+
     try:
-        for command in (
-            [program, *configure, "-DCMAKE_BUILD_TYPE=Release"],
-            [program, "--build", folder],
-        ):
-            subprocess.run(command, check=True, capture_output=True)
-        counted = {}
-        for module in modules():
-            text = subprocess.run(
-                [folder / "core" / "bench" / f"alula_bench{module}", "3"],
-                check=True,
-                capture_output=True,
-            ).stdout
-            counted[module] = json.loads(text)
+        return {
+            module.__name__.split(".")[-1]: programs.run("path_filters", isa, 3)
+            for isa, module in MODULES.items()
+        }
     except (OSError, subprocess.CalledProcessError) as e:
         detail = getattr(e, "stderr", b"") or b""
         print(f"allocations are not counted: {e}\n{detail.decode()[-500:]}", file=sys.stderr)
         return {}
-    return counted
 
 
 def _counted(counted: dict[str, dict[str, Any]], name: str) -> Any:

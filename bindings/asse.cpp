@@ -2,10 +2,8 @@
 // caller's arrays.
 #include <nanobind/stl/tuple.h>
 
-#include <chrono>
 #include <cmath>
 #include <tuple>
-#include <vector>
 
 #include "alula/airdata/asse_filter.hpp"
 #include "alula/airdata/asse_solve.hpp"
@@ -27,12 +25,10 @@ Vec3<double> row(const Matrix& m, std::size_t i) { return {m(i, 0), m(i, 1), m(i
 bool rows_of_three(const Matrix& m, std::size_t n) { return m.shape(0) == n && m.shape(1) == 3; }
 
 // Settings in the order of AsseSettings.
-template <class T>
-alula::AsseSettings<T> settings_of(const Vector& v) {
+alula::AsseSettings<double> settings_of(const Vector& v) {
   check(v.shape(0) == kSettings, "settings: expected 17 numbers");
-  const auto at = [&](std::size_t i) { return static_cast<T>(v(i)); };
-  return {at(0), at(1),  at(2),  at(3),  at(4),  at(5),  at(6),  at(7), at(8),
-          at(9), at(10), at(11), at(12), at(13), at(14), at(15), at(16)};
+  return {v(0), v(1),  v(2),  v(3),  v(4),  v(5),  v(6),  v(7), v(8),
+          v(9), v(10), v(11), v(12), v(13), v(14), v(15), v(16)};
 }
 
 using Counts = std::tuple<long, long, long, long, long>;
@@ -53,77 +49,21 @@ struct Recording {
           "f, w, gravity, wind_rate: expected (n, 3)");
     check(V.shape(0) == n, "V: expected (n,)");
   }
-  template <class T>
-  alula::AsseInput<T> input(std::size_t i) const {
-    const auto v = [&](const Matrix& m) {
-      return Vec3<T>{static_cast<T>(m(i, 0)), static_cast<T>(m(i, 1)), static_cast<T>(m(i, 2))};
-    };
-    return {t(i), v(f), v(w), v(gravity), v(wind_rate)};
+  alula::AsseInput<double> input(std::size_t i) const {
+    return {t(i), row(f, i), row(w, i), row(gravity, i), row(wind_rate, i)};
   }
 };
 
-template <class T>
-void write(double* out, const alula::AsseEstimate<T>& e, const alula::ReportedAngle<T>& alpha,
-           const alula::ReportedAngle<T>& beta) {
+void write(double* out, const alula::AsseEstimate<double>& e,
+           const alula::ReportedAngle<double>& alpha, const alula::ReportedAngle<double>& beta) {
   const double nan = std::nan("");
-  const T values[] = {e.V,       e.alpha,   e.beta,    e.P[0][0], e.P[0][1],
-                      e.P[0][2], e.P[1][1], e.P[1][2], e.P[2][2]};
-  for (int i = 0; i < 9; ++i) out[i] = e.V > T(0) ? static_cast<double>(values[i]) : nan;
+  const double values[] = {e.V,       e.alpha,   e.beta,    e.P[0][0], e.P[0][1],
+                           e.P[0][2], e.P[1][1], e.P[1][2], e.P[2][2]};
+  for (int i = 0; i < 9; ++i) out[i] = e.V > 0.0 ? values[i] : nan;
   out[9] = alpha.observable;
   out[10] = beta.observable;
-  out[11] = alpha.ever ? static_cast<double>(alpha.age) : nan;
-  out[12] = beta.ever ? static_cast<double>(beta.age) : nan;
-}
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-// Time of every solution of a window going over the recording, the least of `rounds`; its mean.
-template <class T>
-double window_seconds(const Recording& r, const Vector& settings, int capacity, int rounds) {
-  std::vector<double> best;
-  for (int round = 0; round < rounds; ++round) {
-    alula::AsseWindow<T> f;
-    f.settings = settings_of<T>(settings);
-    f.capacity = capacity;
-    std::size_t k = 0;
-    for (std::size_t i = 0; i < r.t.shape(0); ++i) {
-      advance(f, r.input<T>(i));
-      const long before = f.rejected.not_finite;
-      const bool added = add_airspeed(f, r.t(i), static_cast<T>(r.V(i)));
-      f.rejected.not_finite = before;
-      if (!added || f.in_block != 0 || f.count < capacity) continue;
-      const auto start = std::chrono::steady_clock::now();
-      solve(f);
-      const double s = seconds_since(start);
-      if (k == best.size())
-        best.push_back(s);
-      else if (s < best[k])
-        best[k] = s;
-      ++k;
-    }
-  }
-  double sum = 0.0;
-  for (const double s : best) sum += s;
-  return best.empty() ? std::nan("") : sum / static_cast<double>(best.size());
-}
-
-template <class T>
-double filter_seconds(const Recording& r, const Vector& settings, int rounds) {
-  double best = 1e9;
-  for (int round = 0; round < rounds; ++round) {
-    alula::AsseFilter<T> f;
-    f.settings = settings_of<T>(settings);
-    start(f);
-    const auto begin = std::chrono::steady_clock::now();
-    for (std::size_t i = 0; i < r.t.shape(0); ++i) {
-      advance(f, r.input<T>(i));
-      add_airspeed(f, r.t(i), static_cast<T>(r.V(i)));
-    }
-    best = std::fmin(best, seconds_since(begin) / static_cast<double>(r.t.shape(0)));
-  }
-  return best;
+  out[11] = alpha.ever ? alpha.age : nan;
+  out[12] = beta.ever ? beta.age : nan;
 }
 
 }  // namespace
@@ -204,14 +144,14 @@ void bind_asse(nb::module_& m) {
         check(every >= 1, "every: expected 1 or more");
         check(out.shape(0) == t.shape(0) && out.shape(1) == kColumns, "out: expected (n, 13)");
         alula::AsseWindow<double> window;
-        window.settings = settings_of<double>(settings);
+        window.settings = settings_of(settings);
         window.capacity = capacity;
         {
           nb::gil_scoped_release release;
           for (std::size_t i = 0; i < t.shape(0); ++i) {
             double* o = out.data() + kColumns * i;
             for (std::size_t c = 0; c < kColumns; ++c) o[c] = std::nan("");
-            const bool taken = advance(window, r.input<double>(i));
+            const bool taken = advance(window, r.input(i));
             if (!std::isnan(V(i))) add_airspeed(window, t(i), V(i));
             if (!taken || i % static_cast<std::size_t>(every) != 0) continue;
             const auto e = solve(window);
@@ -236,14 +176,14 @@ void bind_asse(nb::module_& m) {
         check(alpha.shape(0) == 0 || alpha.shape(0) == t.shape(0), "alpha: expected (n,) or none");
         check(out.shape(0) == t.shape(0) && out.shape(1) == kColumns, "out: expected (n, 13)");
         alula::AsseFilter<double> filter;
-        filter.settings = settings_of<double>(settings);
+        filter.settings = settings_of(settings);
         start(filter);
         {
           nb::gil_scoped_release release;
           for (std::size_t i = 0; i < t.shape(0); ++i) {
             double* o = out.data() + kColumns * i;
             for (std::size_t c = 0; c < kColumns; ++c) o[c] = std::nan("");
-            const bool taken = advance(filter, r.input<double>(i));
+            const bool taken = advance(filter, r.input(i));
             if (!std::isnan(V(i))) add_airspeed(filter, t(i), V(i));
             if (alpha.shape(0) > 0 && filter.running && !std::isnan(alpha(i)))
               add_alpha(filter, alpha(i), alpha_sigma);
@@ -257,22 +197,4 @@ void bind_asse(nb::module_& m) {
       nb::arg("V"), nb::arg("settings"), nb::arg("alpha"), nb::arg("alpha_sigma"), nb::arg("out"),
       "Filter over a recording, arguments as asse_window. alpha (n,) or empty: angles of attack\n"
       "from elsewhere, NaN where there are none, of standard deviation alpha_sigma, rad.");
-
-  m.def(
-      "asse_seconds",
-      [](Vector t, Matrix f, Matrix w, Matrix gravity, Matrix wind_rate, Vector V, Vector settings,
-         int capacity, int rounds) {
-        const Recording r{t, f, w, gravity, wind_rate, V};
-        r.check_shapes();
-        nb::gil_scoped_release release;
-        const double window = window_seconds<double>(r, settings, capacity, rounds);
-        const double window_f = window_seconds<float>(r, settings, capacity, rounds);
-        const double filter = filter_seconds<double>(r, settings, rounds);
-        const double filter_f = filter_seconds<float>(r, settings, rounds);
-        return std::tuple<double, double, double, double>(window, window_f, filter, filter_f);
-      },
-      nb::arg("t"), nb::arg("f"), nb::arg("w"), nb::arg("gravity"), nb::arg("wind_rate"),
-      nb::arg("V"), nb::arg("settings"), nb::arg("capacity"), nb::arg("rounds"),
-      "Seconds a solution of the full window takes (double, float) and a step of the filter with\n"
-      "its airspeed (double, float), over a recording as asse_window takes it.");
 }

@@ -448,12 +448,6 @@ def asse_filter(t: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='
     from elsewhere, NaN where there are none, of standard deviation alpha_sigma, rad.
     """
 
-def asse_seconds(t: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], f: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], w: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], gravity: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], wind_rate: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], V: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], settings: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], capacity: int, rounds: int) -> tuple[float, float, float, float]:
-    """
-    Seconds a solution of the full window takes (double, float) and a step of the filter with
-    its airspeed (double, float), over a recording as asse_window takes it.
-    """
-
 NAVIGATE_KINDS: str = 'position velocity field height V alpha beta'
 
 NAVIGATE_TAKEN: str = ...
@@ -638,13 +632,6 @@ def navigate_pair(attitude: AttitudeNoise, position: PositionNoise, field: Annot
     (k, 15, 15): turn, gyro bias, position, velocity, accelerometer bias. start_sigma: tilt,
     heading, velocity, position, gyro bias, accelerometer bias. steps: inertial samples for one
     step of the position filter.
-    """
-
-def navigation_step_seconds(what: str, steps: int, single: bool = False) -> float:
-    """
-    Seconds per step, mean over `steps` in one loop of the core: 'attitude', 'position',
-    'attitude_update', 'position_update', 'joint', 'joint_flight' (400 Hz with every sensor at
-    its own rate), 'joint_worst' (every sensor in every step). single: float, not double.
     """
 
 def measured_attitude(gravity_B: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], field_B: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], field_E: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], gravity: float, out: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None:
