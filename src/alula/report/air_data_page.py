@@ -1,4 +1,4 @@
-"""The report of an in-flight calibration: one page, no script, nothing from outside."""
+"""The report of the air data: calibration, sources of the angles. No script, nothing from outside."""
 
 from __future__ import annotations
 
@@ -6,7 +6,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from alula.airdata.angles import Compared, Kind
 from alula.airdata.inflight_result import InFlightCalibration, Parameter
+from alula.report.angles_section import ANGLES_STYLE, angles_section
 from alula.report.html import Html, join, table, tag
 from alula.report.numbers import MISSING, interval, number, plus_minus
 from alula.report.pictures import interval_picture, mark
@@ -21,12 +23,21 @@ MEANING = {
     "b_psi": "heading, bias", "gps_delay": "GPS, delay", "h_offset": "height, offset",
     "h_scale": "height, scale",
 }  # fmt: skip
+NOT_CALIBRATED = "Not calibrated: the log lacks what it takes, which the messages name."
 _MARKS = {"ok": ("good", "ok"), "weak": ("caution", "weak"),
           "not_identifiable": ("bad", "not identifiable")}  # fmt: skip
 
 
-def air_data_page(name: str, found: Mapping[str, InFlightCalibration]) -> str:
-    """The page as HTML, a section for each log; the same input gives the same text."""
+def air_data_page(
+    name: str,
+    found: Mapping[str, InFlightCalibration],
+    angles: Mapping[str, Mapping[Kind, Compared]] | None = None,
+) -> str:
+    """The page as HTML, a section for each log; the same input gives the same text.
+
+    found: calibrations, angles: comparisons of the flow angles, by log.
+    """
+    angles = angles or {}
     body = tag(
         "body",
         tag("a", "Skip to the report", href="#report", class_="skip"),
@@ -35,14 +46,20 @@ def air_data_page(name: str, found: Mapping[str, InFlightCalibration]) -> str:
             tag("p", "Alula · air data calibrated in flight", class_="kicker"),
             tag("h1", name),
             *(
-                tag("section", tag("h2", f"Log {id}"), air_data(one), class_="chapter")
-                for id, one in found.items()
+                tag(
+                    "section",
+                    tag("h2", f"Log {id}"),
+                    air_data(found[id]) if id in found else tag("p", NOT_CALIBRATED),
+                    angles_section(angles[id]) if id in angles else "",
+                    class_="chapter",
+                )
+                for id in dict.fromkeys([*found, *angles])
             ),
             tag("footer", tag("p", "End of report. Made by Alula; opens offline.")),
             id="report",
         ),
     )
-    return plain_page(f"{name} · air data", body)
+    return plain_page(f"{name} · air data", body, ANGLES_STYLE if angles else "")
 
 
 def air_data(found: InFlightCalibration) -> Html:
