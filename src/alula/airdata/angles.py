@@ -49,7 +49,7 @@ class AngleSource:
         if len(x) < 8:
             return WHITE
         steps = np.abs(x[3:] - 3.0 * x[2:-1] + 3.0 * x[1:-2] - x[:-3])
-        return max(WHITE, float(np.median(steps)) / (0.6745 * 20.0**0.5))
+        return max(WHITE, float(np.median(steps)) / float(0.6745 * np.sqrt(20.0)))
 
     @property
     def slow(self) -> float:
@@ -172,7 +172,8 @@ def compare_angles(
     The recorded one, and all where there is none, are compared with the vote.
     """
     voting = {n: s for n, s in sources.items() if s.votes and s.reported.any()}
-    voted, named = None, ()
+    voted: Voted | None = None
+    named: tuple[Named, ...] = ()
     if voting:
         interval = max((_interval(t, s) for s in voting.values() if s.recorded), default=0.0)
         voted = monitor(

@@ -25,11 +25,14 @@ _ARMS = {"V": "V", "alpha": "alpha", "beta": "beta", "gps": "v_north", "imu": "a
 
 @dataclass(frozen=True)
 class AirDataJob:
-    """What was found, by log. calibrated: of logs that have what it takes. angles: where asked."""
+    """What was found, by log. calibrated: of logs that have what it takes; refused: why a log has
+    not. angles: where asked.
+    """
 
     project: Project
     logs: tuple[str, ...]
     calibrated: Mapping[str, InFlightCalibration]
+    refused: Mapping[str, Message]
     angles: Mapping[str, Angles]
     files: tuple[SourceFile, ...]
     messages: tuple[Message, ...]
@@ -99,7 +102,7 @@ def run_air_data(
             do="Name a log of this project.",
         )
     aero = None if model is None else load_model(model)
-    calibrated, compared = {}, {}
+    calibrated, refused, compared = {}, {}, {}
     files: list[SourceFile] = []
     said: list[Message] = []
     chosen = [spec for spec in project.logs if not logs or spec.id in logs]
@@ -116,19 +119,22 @@ def run_air_data(
         except BadInput as error:
             if not angles:
                 raise
-            said += [
-                warn("not_calibrated", where=m.where, expected=m.expected, found=m.found,
-                     do=f"The angles are shown uncalibrated. {m.do}")
-                for m in error.messages
-            ]  # fmt: skip
+            first = error.messages[0]
+            refused[spec.id] = warn(
+                "not_calibrated", where=first.where, expected=first.expected, found=first.found,
+                do=f"The angles are shown uncalibrated. {first.do}",
+            )  # fmt: skip
+            said.append(refused[spec.id])
         if angles:
             progress(f"comparing angles of {spec.id}")
             compared[spec.id] = angles_of(
                 project, aircraft, flight, calibrated.get(spec.id), aero, start, end
             )
             said += compared[spec.id].messages
-    ids = tuple(spec.id for spec in chosen)
-    return AirDataJob(project, ids, calibrated, compared, tuple(files), tuple(dict.fromkeys(said)))
+    return AirDataJob(
+        project, tuple(spec.id for spec in chosen), calibrated, refused, compared, tuple(files),
+        tuple(dict.fromkeys(said)),
+    )  # fmt: skip
 
 
 def _calibrated(

@@ -109,7 +109,7 @@ def angles_of(
         except BadInput as error:
             missing(LIFT, error, ("alpha",))
     compared = {k: compare_angles(k, board.t, sources[k], absent[k]) for k in KINDS}
-    for kind, one in compared.items():
+    for kind, result in compared.items():
         said += [
             warn(
                 f"source_{n.reason}",
@@ -118,6 +118,6 @@ def angles_of(
                 found=f"{n.reason} at {n.t:.6g} s",
                 do="It has no vote until it agrees again; look at its sensors there.",
             )
-            for n in one.named
+            for n in result.named
         ]
     return Angles(compared, tuple(dict.fromkeys(said)))

@@ -65,6 +65,7 @@ def airdata(
             from alula.base.files import write_whole
             from alula.report.air_data_page import air_data_page
 
-            angles_found = {id: one.compared for id, one in done.angles.items()}
-            write_whole(report, air_data_page(done.project.name, done.calibrated, angles_found))
+            found = {id: one.compared for id, one in done.angles.items()}
+            page = air_data_page(done.project.name, done.calibrated, found, done.refused)
+            write_whole(report, page)
             command.say(f"Report: {report}")

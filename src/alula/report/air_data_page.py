@@ -1,4 +1,4 @@
-"""The report of the air data: calibration, sources of the angles. No script, nothing from outside."""
+"""The report of the air data, calibration and angles: one page, no script, nothing from outside."""
 
 from __future__ import annotations
 
@@ -8,7 +8,9 @@ import numpy as np
 
 from alula.airdata.angles import Compared, Kind
 from alula.airdata.inflight_result import InFlightCalibration, Parameter
-from alula.report.angles_section import ANGLES_STYLE, angles_section
+from alula.base.messages import Message
+from alula.report.angle_picture import ANGLES_STYLE
+from alula.report.angles_section import angles_section
 from alula.report.html import Html, join, table, tag
 from alula.report.numbers import MISSING, interval, number, plus_minus
 from alula.report.pictures import interval_picture, mark
@@ -23,7 +25,6 @@ MEANING = {
     "b_psi": "heading, bias", "gps_delay": "GPS, delay", "h_offset": "height, offset",
     "h_scale": "height, scale",
 }  # fmt: skip
-NOT_CALIBRATED = "Not calibrated: the log lacks what it takes, which the messages name."
 _MARKS = {"ok": ("good", "ok"), "weak": ("caution", "weak"),
           "not_identifiable": ("bad", "not identifiable")}  # fmt: skip
 
@@ -32,12 +33,14 @@ def air_data_page(
     name: str,
     found: Mapping[str, InFlightCalibration],
     angles: Mapping[str, Mapping[Kind, Compared]] | None = None,
+    refused: Mapping[str, Message] | None = None,
 ) -> str:
     """The page as HTML, a section for each log; the same input gives the same text.
 
-    found: calibrations, angles: comparisons of the flow angles, by log.
+    found: calibrations; angles: comparisons of the flow angles; refused: why there is no
+    calibration; by log.
     """
-    angles = angles or {}
+    angles, refused = angles or {}, refused or {}
     body = tag(
         "body",
         tag("a", "Skip to the report", href="#report", class_="skip"),
@@ -49,7 +52,7 @@ def air_data_page(
                 tag(
                     "section",
                     tag("h2", f"Log {id}"),
-                    air_data(found[id]) if id in found else tag("p", NOT_CALIBRATED),
+                    air_data(found[id]) if id in found else _not_calibrated(refused.get(id)),
                     angles_section(angles[id]) if id in angles else "",
                     class_="chapter",
                 )
@@ -105,6 +108,11 @@ def air_data(found: InFlightCalibration) -> Html:
             *(tag("p", str(m), class_="note") for m in found.messages),
         ]
     )  # fmt: skip
+
+
+def _not_calibrated(why: Message | None) -> Html:
+    words = "" if why is None else f" Expected {why.expected}; found {why.found}. {why.do}"
+    return tag("p", mark("caution", "not calibrated"), words)
 
 
 def _of(output: str) -> float:
