@@ -137,16 +137,21 @@ def run_air_data(
     )  # fmt: skip
 
 
-def _calibrated(
-    flight: Flight, aircraft: Aircraft | None, start: float | None, end: float | None
-) -> InFlightCalibration:
+def vane_arms(aircraft: Aircraft | None) -> dict[str, tuple[float, float, float]]:
+    """Where the sensors sit from the center of gravity, m, as `record_of` takes it."""
     found = arms_of(aircraft)
     arms = {}
     for name, channel in _ARMS.items():
         x, y, z = (float(k) for k in found[channel])
         if x or y or z:
             arms[name] = (x, y, z)
-    return calibrate_in_flight(record_of(flight, start, end, arms=arms))
+    return arms
+
+
+def _calibrated(
+    flight: Flight, aircraft: Aircraft | None, start: float | None, end: float | None
+) -> InFlightCalibration:
+    return calibrate_in_flight(record_of(flight, start, end, arms=vane_arms(aircraft)))
 
 
 def _aircraft(project: Project, log: LogSpec) -> Aircraft | None:

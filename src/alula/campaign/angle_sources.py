@@ -22,8 +22,9 @@ from alula.model import AeroModel
 from alula.reconstruct.transfer import controls_on, engines_on, fuel_on, standard_density
 
 DEG = float(np.radians(1.0))
-UNCALIBRATED = 1.0 * DEG  # error that lasts of a vane whose upwash and bias nobody knows
+UNCALIBRATED = 1.5 * DEG  # error that lasts of a vane whose upwash and bias nobody knows
 LEFT = 0.1 * DEG  # of a calibrated one, at least
+OMITTED = 0.1 * DEG  # what the formula of a lift leaves out, at least
 CALM = 0.2  # m/s of turbulence for ASSE where the project states none
 LAG = 0.1  # s between the printed scheme's equations
 OTHER_AIRCRAFT = 0.01  # relative difference of S, b or c that makes a model another aircraft's
@@ -208,7 +209,7 @@ def lift_source(board: Board, model: AeroModel) -> tuple[AngleSource, list[Messa
     }  # fmt: skip
     alpha = lift_angle(model, **given)  # type: ignore[arg-type]
     with np.errstate(invalid="ignore"):
-        sigma = lift_angle_sigma(model, alpha, **given)  # type: ignore[arg-type]
+        sigma = np.hypot(OMITTED, lift_angle_sigma(model, alpha, **given))  # type: ignore[arg-type]
     how = f"load factor by {coefficient} of '{model.name}'"
     if coefficient == "CL" and len(engines) < len(aircraft.engines):
         how += ", thrust not known"

@@ -46,7 +46,7 @@ def air_data_page(
         tag("a", "Skip to the report", href="#report", class_="skip"),
         tag(
             "main",
-            tag("p", "Alula · air data calibrated in flight", class_="kicker"),
+            tag("p", "Alula · air data", class_="kicker"),
             tag("h1", name),
             *(
                 tag(
