@@ -30,14 +30,16 @@ class AngleSource:
     """values, sigma (n,) rad at the common times, NaN where there is none.
 
     reported (n,): known well enough. age (n,): s since the last reported value, NaN: never.
-    how: where it comes from, in words. recorded: a channel, whose silence is a fault. votes: False
-    for what is only shown beside.
+    observed (n,): reported, or last so within three of its own intervals: a slow source is seen
+    between its readings, too. how: where it comes from, in words. recorded: a channel, whose
+    silence is a fault. votes: False for what is only shown beside.
     """
 
     values: Array
     sigma: Array
     reported: NDArray[np.bool_]
     age: Array
+    observed: NDArray[np.bool_]
     how: str
     recorded: bool = False
     votes: bool = True
@@ -49,6 +51,9 @@ class AngleSource:
         if len(x) < 8:
             return WHITE
         steps = np.abs(x[3:] - 3.0 * x[2:-1] + 3.0 * x[1:-2] - x[:-3])
+        steps = steps[steps > 0.0]  # of a stuck one
+        if not len(steps):
+            return WHITE
         return max(WHITE, float(np.median(steps)) / float(0.6745 * np.sqrt(20.0)))
 
     @property
@@ -97,7 +102,7 @@ class Compared:
             rows.append({
                 "name": name, "how": s.how, "votes": s.votes,
                 "samples": int(np.isfinite(s.values).sum()),
-                "reported": float(np.mean(s.reported)),
+                "observed": float(np.mean(s.observed)),
                 "sigma_deg": deg * _mean(s.sigma[s.reported]),
                 "age_at_end_s": float(s.age[-1]),
                 "against": a.against, "compared": a.n, "rms_deg": deg * a.rms,
@@ -109,7 +114,7 @@ class Compared:
             "sources": rows,
             "absent": [{"name": n, "reason": why} for n, why in self.absent.items()],
             "voted": None if v is None else {
-                "reported": float(np.mean(np.isfinite(v.angle))),
+                "observed": float(np.mean(np.isfinite(v.angle))),
                 "sigma_deg": deg * _mean(v.sigma[np.isfinite(v.sigma)]),
                 "split": float(np.mean(v.split)),
             },
@@ -125,14 +130,14 @@ class Compared:
         ]
         for r in found["sources"]:
             lines.append(
-                f"{r['name']:<18}{r['samples']:>8}{_share(r['reported']):>10}{_word(r['sigma_deg']):>8}"
+                f"{r['name']:<18}{r['samples']:>8}{_share(r['observed']):>10}{_word(r['sigma_deg']):>8}"
                 f"  {r['against']:<12}{_word(r['rms_deg']):>7}{_word(r['bias_deg']):>7}"
                 f"{_word(r['normalized_rms']):>11}" + ("" if r["votes"] else "  no vote")
             )
         vote = found["voted"]
         if vote is not None:
             lines.append(
-                f"{'voted':<26}{_share(vote['reported']):>10}{_word(vote['sigma_deg']):>8}"
+                f"{'voted':<26}{_share(vote['observed']):>10}{_word(vote['sigma_deg']):>8}"
             )
         lines += [f"{r['name']:<18}not there: {r['reason']}" for r in found["absent"]]
         lines += [f"  {r['source']} {r['reason']} at {r['t']:.6g} s" for r in found["failures"]]
@@ -159,8 +164,10 @@ def angle_source(
         reported &= observable
     last = np.maximum.accumulate(np.where(reported, np.arange(len(t)), -1))
     age = np.where(last >= 0, t - t[last], np.nan)
+    with np.errstate(invalid="ignore"):
+        observed = age <= 3.0 * _interval(t, values) + 1e-9
     return AngleSource(
-        frozen(values), frozen(sigma), reported, frozen(age), how, recorded, votes
+        frozen(values), frozen(sigma), reported, frozen(age), observed, how, recorded, votes
     )  # fmt: skip
 
 
@@ -175,7 +182,7 @@ def compare_angles(
     voted: Voted | None = None
     named: tuple[Named, ...] = ()
     if voting:
-        interval = max((_interval(t, s) for s in voting.values() if s.recorded), default=0.0)
+        interval = max((_interval(t, s.values) for s in voting.values() if s.recorded), default=0.0)
         voted = monitor(
             t,
             {n: np.where(s.reported, s.values, np.nan) for n, s in voting.items()},
@@ -221,6 +228,21 @@ def on_grid(t: Array, own: Array, values: Array) -> Array:
     return np.where(fresh, np.interp(t, own, values), np.nan)
 
 
+def stuck_held(raw: Array, values: Array) -> Array:
+    """values (n,), made from readings raw (n,), as constant as these where they stick: the monitor
+    then sees what a lever arm or a correction would hide. NaN are no readings.
+    """
+    at = np.flatnonzero(np.isfinite(raw))
+    if not len(at):
+        return values
+    first = np.concatenate([[True], np.diff(raw[at]) != 0.0])
+    run = np.cumsum(first) - 1
+    long = np.bincount(run)[run] > STUCK
+    out = np.array(values)
+    out[at[long]] = values[at[np.flatnonzero(first)[run[long]]]]
+    return out
+
+
 def _agreement(
     against: str, source: AngleSource, there: NDArray[np.bool_], value: Array, sigma: Array
 ) -> Agreement:
@@ -235,9 +257,9 @@ def _agreement(
     )  # fmt: skip
 
 
-def _interval(t: Array, source: AngleSource) -> float:
+def _interval(t: Array, values: Array) -> float:
     """Median time between readings, s."""
-    at = t[np.isfinite(source.values)]
+    at = t[np.isfinite(values)]
     return float(np.median(np.diff(at))) if len(at) > 1 else 0.0
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from alula.airdata.angles import AngleSource, Kind, angle_source, on_grid
+from alula.airdata.angles import AngleSource, Kind, angle_source, on_grid, stuck_held
 from alula.airdata.asse import AsseRecord, AsseResult, AsseSettings, estimate_filter
 from alula.airdata.asse import gravity_in_body as gravity_of
 from alula.airdata.asse_lift import lift_angle, lift_angle_sigma, lift_coefficient
@@ -45,7 +45,8 @@ def recorded(board: Board, kind: Kind, calibration: InFlightCalibration | None) 
     flank = kind == "beta" and "beta" not in board.flight and "beta_flank" in board.flight
     channel = "beta_flank" if flank else kind
     board.need("recorded angle", channel)
-    values, how, slow = board.fresh(channel), "recorded, not calibrated", UNCALIBRATED
+    raw = board.fresh(channel)
+    values, how, slow = raw, "recorded, not calibrated", UNCALIBRATED
     scale, bias = f"k_{kind}", f"b_{kind}"
     if calibration is not None:
         p = {x.name: x for x in calibration.parameters}
@@ -66,6 +67,7 @@ def recorded(board: Board, kind: Kind, calibration: InFlightCalibration | None) 
     if np.any(arm):
         how += ", carried to the center of gravity"
     moved = carried(board.V, alpha, beta, board.rates, -arm)[0 if kind == "alpha" else 1]
+    moved = stuck_held(raw, moved)
     white = board.sigma(channel) or 0.0
     return angle_source(at, moved, float(np.hypot(slow, white)), how, recorded=True)
 

@@ -9,7 +9,7 @@ from typing import Any
 from alula.aircraft import Aircraft
 from alula.airdata.angles import AngleSource, Compared, Kind, compare_angles
 from alula.airdata.inflight_result import InFlightCalibration
-from alula.base.messages import BadInput, Message, note, warn
+from alula.base.messages import BadInput, Message, note, refuse, warn
 from alula.base.project import Project
 from alula.campaign.angle_board import board_of
 from alula.campaign.angle_sources import (
@@ -108,6 +108,14 @@ def angles_of(
             said += noticed
         except BadInput as error:
             missing(LIFT, error, ("alpha",))
+    if not any(sources.values()):
+        raise refuse(
+            "no_angles",
+            where=f"log {flight.id}",
+            expected="a recorded angle, or what ASSE, joint filter or lift model take",
+            found="; ".join(f"{name}: {why}" for name, why in absent["alpha"].items()),
+            do="Map alpha or beta in [channels], or inertial sensors, attitude and V.",
+        )
     compared = {k: compare_angles(k, board.t, sources[k], absent[k]) for k in KINDS}
     for kind, result in compared.items():
         said += [

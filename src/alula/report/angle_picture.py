@@ -95,14 +95,10 @@ def angle_picture(found: Compared, name: str, axes: Axes) -> Html:
 
 
 def _silent(t: Array, source: AngleSource, axes: Axes) -> list[Html]:
-    """Shades where nothing was reported for longer than its usual interval."""
-    at = t[source.reported]
-    usual = float(np.median(np.diff(at))) if len(at) > 1 else 0.0
-    with np.errstate(invalid="ignore"):
-        silent = np.logical_not(source.age <= 3.0 * usual + 1e-9)
+    """Shades where it is not observed."""
     least = (axes.end - axes.begin) / STEPS
     stretches: list[tuple[float, float]] = []
-    for i, j in _runs(silent):
+    for i, j in _runs(np.logical_not(source.observed)):
         a, b = float(t[i]), float(t[min(j, len(t) - 1)])
         if stretches and a - stretches[-1][1] < least:
             stretches[-1] = (stretches[-1][0], b)

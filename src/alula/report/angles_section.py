@@ -30,7 +30,7 @@ def _of(kind: Kind, found: Compared) -> Html:
     data = found.as_dict()
     rows = [
         [
-            r["name"], r["how"], f"{100.0 * r['reported']:.0f} %", _shown(r["sigma_deg"]),
+            r["name"], r["how"], f"{100.0 * r['observed']:.0f} %", _shown(r["sigma_deg"]),
             r["against"] or MISSING, _shown(r["rms_deg"]), _shown(r["bias_deg"]),
             _shown(r["normalized_rms"]), _verdict(found, r["name"]),
         ]
