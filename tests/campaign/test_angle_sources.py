@@ -64,6 +64,21 @@ def test_all_sources_beside_one_another(calm) -> None:
     assert not printed.votes
 
 
+def test_scale_error_of_the_airspeed_is_taken_out(calm) -> None:
+    """Doubled airspeeds with a calibration that says so: the same angles as before."""
+    _, log, calibration = calm
+    scale = replace(calibration["k_V"], value=1.0, verdict="ok")
+    told = replace(
+        calibration,
+        parameters=tuple(scale if p.name == "k_V" else p for p in calibration.parameters),
+    )
+    doubled = angles(changed(log, "V", lambda t, x: 2.0 * x), told)
+    assert any(m.code == "speed_calibrated" for m in doubled.messages)
+    plain = angles(log).compared["alpha"].sources["ASSE"].values
+    again = doubled.compared["alpha"].sources["ASSE"].values
+    assert again == pytest.approx(plain, abs=1e-9, nan_ok=True)  # rounding of two divisions
+
+
 def test_vane_that_sticks_is_named(calm) -> None:
     _, log, calibration = calm
     stuck = changed(log, "alpha", lambda t, x: np.where(t < 60.0, x, x[t < 60.0][-1]))
@@ -159,19 +174,18 @@ def test_attas_elevator_maneuver() -> None:
     assert "v_north" in found["alpha"].absent["joint filter"]
 
 
-def test_attas_lift_model_on_maneuvers_it_never_saw() -> None:
+def test_attas_lift_model_on_a_maneuver_it_never_saw() -> None:
     """A line through lift fitted elsewhere to the elevator maneuver (CL0 .2351, CLa 5.222, data
-    README) gives the vane's angle in the aileron and rudder maneuvers: 0.3 deg, a tenth of g.
+    README) gives the vane's angle in the rudder maneuver; 0.3 deg is a 25th of the lift.
     """
-    data("attas", "fAttasAil1.mat")
+    data("attas", "fAttasRud1.mat")
     line = aero_model(
         "line", {"CL": "1 + alpha"}, {"CL_0": 0.2351, "CL_alpha": 5.222},
         Reference(64.0, 21.5, 3.159), axes="stability",
     )  # fmt: skip
-    for log in (1, 2):
-        row = real("attas", log, line).compared["alpha"].agreement["lift model"]
-        assert row.n > 700
-        assert row.rms < 0.3 * DEG
+    row = real("attas", 2, line).compared["alpha"].agreement["lift model"]
+    assert row.n > 700
+    assert row.rms < 0.3 * DEG
 
 
 def test_citation_whole_flight() -> None:

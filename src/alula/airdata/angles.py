@@ -176,7 +176,8 @@ def compare_angles(
 ) -> Compared:
     """Vote over the sources at times t (n,), and compare each with the recorded channel.
 
-    The recorded one, and all where there is none, are compared with the vote.
+    The recorded one, and all where there is none, are compared with the vote; with the recorded
+    one only while it has a vote.
     """
     voting = {n: s for n, s in sources.items() if s.votes and s.reported.any()}
     voted: Voted | None = None
@@ -195,9 +196,9 @@ def compare_angles(
     recorded = next((n for n, s in voting.items() if s.recorded), None)
     agreement = {}
     for name, source in sources.items():
-        if recorded is not None and name != recorded:
-            other = sources[recorded]
-            there, value, sigma = other.reported, other.values, other.sigma
+        if recorded is not None and voted is not None and name != recorded:
+            other, healthy = sources[recorded], voted.health[:, voted.names.index(recorded)] == 0
+            there, value, sigma = other.reported & healthy, other.values, other.sigma
             against = recorded
         elif voted is not None:
             # a vote of its own only would agree with itself

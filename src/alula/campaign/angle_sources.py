@@ -160,7 +160,7 @@ def joint_sources(board: Board) -> tuple[Found, list[Message]]:
         sigma = np.sqrt(np.maximum(covariance[:, 1 + k, 1 + k], 0.0))
         out[kind] = angle_source(  # type: ignore[index]
             board.t, _pick(board, found.t, angles[k]), _pick(board, found.t, sigma),
-            "satellites, IMU and airspeed, without vanes",
+            "satellites, IMU and airspeed, without vanes, sideslip near zero",
         )  # fmt: skip
     return out, [*said, *found.messages]
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from alula.aircraft import Aircraft
 from alula.airdata.angles import AngleSource, Compared, Kind, compare_angles
 from alula.airdata.inflight_result import InFlightCalibration
+from alula.base.arrays import frozen
 from alula.base.messages import BadInput, Message, note, refuse, warn
 from alula.base.project import Project
 from alula.campaign.angle_board import board_of
@@ -60,10 +61,10 @@ def angles_of(
     calibration: of the recorded channels; model: with a lift. Raises BadInput where the log has
     neither flow angles nor inertial sensors.
     """
+    flight, said = _speed(flight, calibration)
     board = board_of(project, aircraft, flight, start, end)
     sources: dict[Kind, dict[str, AngleSource]] = {"alpha": {}, "beta": {}}
     absent: dict[Kind, dict[str, str]] = {"alpha": {}, "beta": {}}
-    said: list[Message] = []
 
     def missing(name: str, error: BadInput, kinds: tuple[Kind, ...] = KINDS) -> None:
         first = error.messages[0]
@@ -129,3 +130,21 @@ def angles_of(
             for n in result.named
         ]
     return Angles(compared, tuple(dict.fromkeys(said)))
+
+
+def _speed(flight: Flight, calibration: InFlightCalibration | None) -> tuple[Flight, list[Message]]:
+    """The flight with its airspeed corrected where the calibration determined its scale."""
+    if calibration is None or "V" not in flight or not calibration.rich:
+        return flight, []
+    channel, scale = flight["V"], calibration["k_V"].value
+    values = frozen(calibration.corrected({"V": channel.values})["V"])
+    source = f"{channel.source}; calibrated in flight"
+    channels = {**flight.channels, "V": replace(channel, values=values, source=source)}
+    said = note(
+        "speed_calibrated",
+        where=f"log {flight.id}, V",
+        expected="airspeed as recorded",
+        found=f"a scale error of {100.0 * scale:.2f} %, by this flight",
+        do="ASSE, joint filter and lift model take the corrected one.",
+    )
+    return replace(flight, channels=channels), [said]

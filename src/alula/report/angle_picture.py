@@ -26,7 +26,7 @@ ANGLES_STYLE = """
 .angle .axis{fill:var(--plot-muted)}
 """
 WIDTH, HEIGHT, LEFT, TOP, BOTTOM = 1120.0, 130.0, 44.0, 20.0, 18.0
-WIDE, TALL = WIDTH - LEFT - 6.0, HEIGHT - TOP - BOTTOM
+WIDE, TALL = WIDTH - LEFT - 16.0, HEIGHT - TOP - BOTTOM
 STEPS = 700  # stretches of the time axis, of which a curve keeps lowest and highest
 FAULTS = 8  # labels of a picture
 DEG = float(np.degrees(1.0))
