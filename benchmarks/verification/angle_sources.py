@@ -25,7 +25,7 @@ from alula.airdata.inflight_record import record_of
 from alula.base.arrays import Array, frozen
 from alula.base.project import Project
 from alula.campaign.airdata import vane_arms
-from alula.campaign.angle_board import arms_of
+from alula.campaign.angle_board import arm_of
 from alula.campaign.angles import Angles, angles_of
 from alula.campaign.job import run_project
 from alula.flight import Channel, Flight
@@ -138,11 +138,10 @@ def log_of(made: SimulatedFlight, seed: int) -> Flight:
     """What the recorder kept of it."""
     random = np.random.default_rng([23, seed])
     aircraft, m = the_aircraft(), made.motion
-    arms = arms_of(aircraft)
     w = np.column_stack([m.p, m.q, m.r])
     w_dot = np.column_stack([m.pdot, m.qdot, m.rdot])
-    f = specific_force_at(np.column_stack([m.ax, m.ay, m.az]), w, w_dot, arms["ax"])
-    boom = flow_angles(velocity_at(made.air_velocity, w, arms["V"]))
+    f = specific_force_at(np.column_stack([m.ax, m.ay, m.az]), w, w_dot, arm_of(aircraft, "ax"))
+    boom = flow_angles(velocity_at(made.air_velocity, w, arm_of(aircraft, "V")))
     rate = 1.0 / float(m.t[1] - m.t[0])
     every = max(1, round(rate / LOG))
 

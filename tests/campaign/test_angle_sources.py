@@ -90,6 +90,17 @@ def test_vane_that_sticks_is_named(calm) -> None:
     assert any(m.code == "source_stuck" for m in found.messages)
 
 
+def test_second_vane_has_a_vote_of_its_own(calm) -> None:
+    """It is off by 8 deg from 60 s on; the other sources outvote it. Each has its own place."""
+    _, log, calibration = calm
+    second = changed(log, "alpha", lambda t, x: x + np.where(t < 60.0, 0.0, 8.0 * DEG))["alpha"]
+    both = replace(log, channels={**log.channels, "alpha_2": replace(second, name="alpha_2")})
+    found = angles(both, calibration, made.lift_model()).compared["alpha"]
+    (named,) = found.named
+    assert (named.source, named.reason) == ("recorded alpha_2", "biased")
+    assert 60.0 < named.t < 62.0
+
+
 def test_what_lacks_is_said_by_source(calm) -> None:
     _, log, _ = calm
     bare = without(log, "phi", "v_north", "v_east", "north", "east", "beta")
@@ -123,6 +134,16 @@ def test_no_numbers_are_no_readings(calm) -> None:
     one = angles(holed).compared["alpha"]
     assert np.isfinite(one.sources["ASSE"].values[one.t > 44.0]).any()
     assert any(m.code == "not_finite" for m in angles(holed).messages)
+
+
+def test_pitot_that_falls_silent_takes_the_vane_not_along(calm) -> None:
+    _, log, _ = calm
+    silent = changed(log, "V", lambda t, x: np.where(t < 50.0, x, np.nan))
+    found = angles(silent, model=made.lift_model()).compared["alpha"]
+    late = found.t > 60.0
+    assert found.sources["recorded"].reported[late].all()
+    assert np.isnan(found.sources["lift model"].values[late]).all()
+    assert not any(n.source == "recorded" for n in found.named)
 
 
 def test_models_that_do_not_fit(calm) -> None:

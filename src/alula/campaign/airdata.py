@@ -13,7 +13,7 @@ from alula.airdata.inflight_record import record_of
 from alula.airdata.inflight_result import InFlightCalibration
 from alula.base.messages import BadInput, Message, refuse, warn
 from alula.base.project import LogSpec, Project, load_project
-from alula.campaign.angle_board import arms_of
+from alula.campaign.angle_board import arm_of
 from alula.campaign.angles import Angles, angles_of
 from alula.campaign.check import Progress
 from alula.flight import Flight, SourceFile
@@ -139,10 +139,9 @@ def run_air_data(
 
 def vane_arms(aircraft: Aircraft | None) -> dict[str, tuple[float, float, float]]:
     """Where the sensors sit from the center of gravity, m, as `record_of` takes it."""
-    found = arms_of(aircraft)
     arms = {}
     for name, channel in _ARMS.items():
-        x, y, z = (float(k) for k in found[channel])
+        x, y, z = (float(k) for k in arm_of(aircraft, channel))
         if x or y or z:
             arms[name] = (x, y, z)
     return arms

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import re
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,8 +23,8 @@ _BASES = ("ax", "alpha", "beta", "beta_flank", "V")
 
 @dataclass(frozen=True)
 class Board:
-    """One log. t (n,): the common times, in flight; V (n,) m/s, rates (n, 3) rad/s, zero where the
-    log has none; arms: (3,) m from the center of gravity to 'V', 'alpha', 'beta', 'ax'.
+    """One log. t (n,): the common times, in flight; V (n,) m/s, NaN in holes; rates (n, 3) rad/s,
+    zero where the log has none.
     """
 
     project: Project
@@ -33,11 +33,29 @@ class Board:
     t: Array
     V: Array
     rates: Array
-    arms: Mapping[str, Array]
+
+    @property
+    def V_filled(self) -> Array:
+        """V (n,) with holes bridged, for what depends on it weakly; NaN without any."""
+        good = np.isfinite(self.V)
+        return np.interp(self.t, self.t[good], self.V[good]) if good.any() else self.V
+
+    def arm(self, channel: str) -> Array:
+        """Where its sensor sits from the center of gravity, (3,) m."""
+        return arm_of(self.aircraft, channel)
+
+    def sensors(self, *names: str) -> list[str]:
+        """Channels of these names and of second sensors, as 'alpha_2', that have numbers."""
+        found = [n for n in self.flight.channels if re.sub(r"_\d+$", "", n) in names]
+        return sorted(n for n in found if _numbers(self.flight[n]))
+
+    def has(self, *names: str) -> bool:
+        """Whether all these channels are there, with numbers."""
+        return all(n in self.flight and _numbers(self.flight[n]) for n in names)
 
     def need(self, what: str, *names: str) -> None:
         """Refuse where one of these channels is not there, or has no number."""
-        missing = [n for n in names if n not in self.flight or not _numbers(self.flight[n])]
+        missing = [n for n in names if not self.has(n)]
         if missing:
             raise refuse(
                 "missing_channel",
@@ -94,9 +112,10 @@ def board_of(
         V = samples(flight["V"], t) if "V" in flight else np.full(len(t), np.nan)
         if "V" in flight:
             with np.errstate(invalid="ignore"):
-                flying = V > SLOWEST
-            found += f", {int(flying.sum())} above {SLOWEST:g} m/s"
-            t, V = t[flying], V[flying]
+                stands = V <= SLOWEST  # a pitot tube that fell silent does not stand
+                fast = int(np.sum(V > SLOWEST))
+            found += f", {fast} above {SLOWEST:g} m/s"
+            t, V = (t[~stands], V[~stands]) if fast else (t[:0], V[:0])
     if len(t) < 2:
         raise refuse(
             "no_angles",
@@ -109,7 +128,6 @@ def board_of(
     rates = [np.nan_to_num(samples(flight[n], t)) if n in flight else none for n in ("p", "q", "r")]
     return Board(
         project, aircraft, flight, frozen(t), frozen(V), frozen(np.column_stack(rates)),
-        arms_of(aircraft),
     )  # fmt: skip
 
 
@@ -129,13 +147,12 @@ def samples(channel: Channel, t: Array) -> Array:
     return out
 
 
-def arms_of(aircraft: Aircraft | None) -> dict[str, Array]:
-    """Where the sensors sit from the center of gravity, (3,) m; at it without [mass]."""
-    names = ("V", "alpha", "beta", "ax", "v_north")
+def arm_of(aircraft: Aircraft | None, channel: str) -> Array:
+    """Where a channel's sensor sits from the center of gravity, (3,) m; at it without [mass]."""
     if aircraft is None or aircraft.mass is None:
-        return {n: np.zeros(3) for n in names}
+        return np.zeros(3)
     center = aircraft.mass_properties(np.zeros(1)).cg[0]
-    return {n: np.asarray(aircraft.sensor_position(n) - center) for n in names}
+    return np.asarray(aircraft.sensor_position(channel) - center)
 
 
 def velocity(V: Array | float, alpha: Array, beta: Array) -> Array:

@@ -26,7 +26,8 @@ UNCALIBRATED = 1.5 * DEG  # error that lasts of a vane whose upwash and bias nob
 LEFT = 0.1 * DEG  # of a calibrated one, at least
 OMITTED = 0.1 * DEG  # what the formula of a lift leaves out, at least
 CALM = 0.2  # m/s of turbulence for ASSE where the project states none
-LAG = 0.1  # s between the printed scheme's equations
+LAG, LEAST = 0.1, 20  # s between the printed scheme's equations; airspeeds that it needs
+SATELLITES = (("v_north", "v_east"), ("north", "east"), ("lat", "lon"))
 OTHER_AIRCRAFT = 0.01  # relative difference of S, b or c that makes a model another aircraft's
 Found = dict[Kind, AngleSource]
 
@@ -40,15 +41,14 @@ class Asse:
     result: AsseResult
 
 
-def recorded(board: Board, kind: Kind, calibration: InFlightCalibration | None) -> AngleSource:
-    """The log's own channel, corrected as far as the calibration is determined."""
-    flank = kind == "beta" and "beta" not in board.flight and "beta_flank" in board.flight
-    channel = "beta_flank" if flank else kind
-    board.need("recorded angle", channel)
+def recorded(
+    board: Board, kind: Kind, channel: str, calibration: InFlightCalibration | None
+) -> AngleSource:
+    """One of the log's own channels; the first corrected, if the calibration is determined."""
     raw = board.fresh(channel)
     values, how, slow = raw, "recorded, not calibrated", UNCALIBRATED
     scale, bias = f"k_{kind}", f"b_{kind}"
-    if calibration is not None:
+    if calibration is not None and channel in (kind, "beta_flank"):
         p = {x.name: x for x in calibration.parameters}
         told = {n for n in (scale, bias) if n in p and p[n].verdict != "not_identifiable"}
         if told == {scale, bias}:
@@ -61,12 +61,12 @@ def recorded(board: Board, kind: Kind, calibration: InFlightCalibration | None) 
     if side in board.flight:
         other = np.nan_to_num(board.on(side, at))
     alpha, beta = (values, other) if kind == "alpha" else (other, values)
-    if flank:
+    if channel.startswith("beta_flank"):
         beta = beta_of_flank(beta, alpha)
-    arm = board.arms[kind]
+    arm = board.arm(channel)
     if np.any(arm):
         how += ", carried to the center of gravity"
-    moved = carried(board.V, alpha, beta, board.rates, -arm)[0 if kind == "alpha" else 1]
+    moved = carried(board.V_filled, alpha, beta, board.rates, -arm)[0 if kind == "alpha" else 1]
     moved = stuck_held(raw, moved)
     white = board.sigma(channel) or 0.0
     return angle_source(at, moved, float(np.hypot(slow, white)), how, recorded=True)
@@ -82,7 +82,7 @@ def asse(board: Board) -> Asse:
     phi, theta = board.on("phi", t), board.on("theta", t)
     gravity = gravity_of(phi, theta, board.project.reconstruct.gravity)
     settings = _settings(board, float(np.median(np.diff(t))))
-    swing = np.nan_to_num(np.cross(w, board.arms["V"] - board.arms["ax"]))
+    swing = np.nan_to_num(np.cross(w, board.arm("V") - board.arm("ax")))
     alpha = np.full(len(t), settings.first_alpha)
     beta = np.full(len(t), settings.first_beta)
     for _ in range(2 if np.any(swing) else 1):  # the way it flies tells which part of it counts
@@ -98,7 +98,7 @@ def asse_sources(board: Board, made: Asse) -> Found:
     """Angles of ASSE, with where it says that they are observable."""
     r = made.result
     rates = np.nan_to_num(made.record.w)
-    alpha, beta = carried(r.V, r.alpha, r.beta, rates, -board.arms["ax"])
+    alpha, beta = carried(r.V, r.alpha, r.beta, rates, -board.arm("ax"))
     out: Found = {}
     each = zip(
         ("alpha", "beta"), (alpha, beta), (r.sigma_alpha, r.sigma_beta),
@@ -115,21 +115,27 @@ def asse_sources(board: Board, made: Asse) -> Found:
 
 def zero_order_sources(board: Board, made: Asse) -> Found:
     """The printed scheme beside: four equations, shown where its existence number allows it."""
-    record = made.record
-    t = record.t
-    good = np.isfinite(record.V)
-    if good.sum() < 20:
+    whole = made.record
+    known = np.isfinite(whole.V)
+    at = np.unique(np.clip(np.searchsorted(whole.t, board.t), 0, len(whole.t) - 1))
+    t = whole.t[at]
+    if known.sum() < LEAST or len(t) < LEAST:
         raise refuse(
-            "too_few_samples", where=f"log {board.flight.id}, zero-order scheme",
-            expected="20 airspeeds or more", found=str(int(good.sum())), do="Give a longer part.",
-        )  # fmt: skip
-    V = np.interp(t, t[good], record.V[good])
-    slope = LocalCubic(t, 0.5).derivative(V)
+            "too_few_samples",
+            where=f"log {board.flight.id}, zero-order scheme",
+            expected=f"{LEAST} airspeeds or more",
+            found=str(int(known.sum())),
+            do="Give a longer part.",
+        )
+    V = np.interp(t, whole.t[known], whole.V[known])
     lag = max(1, round(LAG / float(np.median(np.diff(t)))))
     found = zero_order(
-        replace(record, V=V), made.settings.first_alpha, made.settings.first_beta,
-        offsets=(lag, 2 * lag, 3 * lag), V_dot=slope,
-    )  # fmt: skip
+        AsseRecord(t=t, f=whole.f[at], w=whole.w[at], gravity=whole.gravity[at], V=V),
+        made.settings.first_alpha,
+        made.settings.first_beta,
+        offsets=(lag, 2 * lag, 3 * lag),
+        V_dot=LocalCubic(t, 5.0 * LAG).derivative(V),
+    )
     out: Found = {}
     for kind, x, number, told in (
         ("alpha", found.alpha, found.existence_alpha, found.observable_alpha),
@@ -148,13 +154,12 @@ def joint_sources(board: Board) -> tuple[Found, list[Message]]:
     """The joint filter without alpha and beta of the log: satellites, IMU, airspeed."""
     board.need("joint filter", *INERTIAL, "V")
     flight = board.flight
-    pairs = (("v_north", "v_east"), ("north", "east"), ("lat", "lon"))
-    if not any(all(n in flight for n in pair) for pair in pairs):
+    if not any(board.has(*pair) for pair in SATELLITES):
         board.need("joint filter", "v_north", "v_east")
     found, said = navigate_flight(board.project, flight, board.aircraft, without=("alpha", "beta"))
     air, covariance = found.air(), found.air_covariance()
     rates = np.nan_to_num(board.columns(INERTIAL[3:], found.t)) - found.gyro_bias
-    angles = carried(air[:, 0], air[:, 1], air[:, 2], rates, -board.arms["ax"])
+    angles = carried(air[:, 0], air[:, 1], air[:, 2], rates, -board.arm("ax"))
     out: Found = {}
     for k, kind in enumerate(("alpha", "beta")):
         sigma = np.sqrt(np.maximum(covariance[:, 1 + k, 1 + k], 0.0))
@@ -181,8 +186,9 @@ def lift_source(board: Board, model: AeroModel) -> tuple[AngleSource, list[Messa
         )
     said = _other_aircraft(board, model)
     w = board.columns(INERTIAL[3:], t)
-    arm = -board.arms["ax"]
-    turning = np.column_stack([LocalCubic(t).derivative(np.nan_to_num(x)) for x in w.T])
+    arm = -board.arm("ax")
+    cubic = LocalCubic(t)
+    turning = np.column_stack([cubic.derivative(np.nan_to_num(x)) for x in w.T])
     f = board.columns(INERTIAL[:3], t) + np.cross(turning, arm) + np.cross(w, np.cross(w, arm))
     V = board.V
     if "rho" in flight:
@@ -222,7 +228,7 @@ def _settings(board: Board, step: float) -> AsseSettings:
     """The defaults, with the noise the project states and air of some turbulence."""
     spec = board.project.navigate
     gust = spec.gust if "gust" in spec.model_fields_set else CALM
-    usual = float(np.median(board.V))
+    usual = float(np.nanmedian(board.V))
     kept = AsseSettings(density_wind=gust * float(np.sqrt(2.0 * usual / spec.gust_length)))
     V = board.sigma("V")
     tilt = max((board.sigma(n) or 0.0 for n in ("phi", "theta")), default=0.0)

@@ -77,10 +77,12 @@ def angles_of(
         )  # fmt: skip
 
     for kind in KINDS:
-        try:
-            sources[kind][RECORDED] = recorded(board, kind, calibration)
-        except BadInput as error:
-            missing(RECORDED, error, (kind,))
+        names = board.sensors(kind, "beta_flank") if kind == "beta" else board.sensors(kind)
+        for k, channel in enumerate(names):
+            name = RECORDED if k == 0 else f"{RECORDED} {channel}"
+            sources[kind][name] = recorded(board, kind, channel, calibration)
+        if not names:
+            absent[kind][RECORDED] = f"no {kind}"
     try:
         made = asse(board)
     except BadInput as error:
