@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from verification import (
     airdata_monitor,
+    angle_sources,
     armhawk_accelerometer,
     armhawk_flight,
     armhawk_magnetometer,
@@ -77,6 +78,12 @@ ROWS = {
         "stuck, biased (3 deg), noisy, dead source named within 2 s in 95 %; under one false "
         "alarm in 10 h",
         airdata_monitor.check,
+    ),
+    "ASSE beside joint filter and identified lift model, simulated flights of the two-seater": (
+        "no source errs more than it states (NEES, 99.9 %); in calm air alpha of ASSE under 1.5 "
+        "deg rms on at least 60 %, of the joint filter under 1.0, of the lift model under 0.2; "
+        "all beside one another with the vote",
+        angle_sources.check,
     ),
     "in-flight calibration": (
         "true scale and upwash inside their intervals; a straight flight is refused",

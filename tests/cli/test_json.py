@@ -184,7 +184,7 @@ def test_check(sound: SmallProject) -> None:
     assert len(card["channels"]) == len(sound.header) - 1  # all but time
 
 
-@pytest.mark.parametrize("kind", ["project", "aircraft"])
+@pytest.mark.parametrize("kind", ["project", "aircraft", "calibration"])
 def test_schema(kind: str) -> None:
     found = checked(alula("schema", kind, "--json", "-"), "schema", "ok")
     assert found.result["type"] == "object"

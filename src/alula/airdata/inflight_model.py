@@ -18,6 +18,7 @@ from scipy.signal import lfilter
 
 from alula.airdata.inflight_record import AirDataRecord
 from alula.base.arrays import Array
+from alula.base.rotation import rotated
 
 G = 9.80665
 OUTPUTS = ("V", "alpha", "beta", "beta_flank", "h")
@@ -113,16 +114,6 @@ def model_of(record: AirDataRecord, without: tuple[str, ...] = ()) -> Model:
         names += ["static_error", "h_offset", "h_scale"]
     kept = tuple(n for n in names if n not in without or n.startswith("wind"))
     return Model(record, tuple(outputs), kept)
-
-
-def rotated(phi: Array, theta: Array, psi: Array, v_E: Array) -> Array:
-    """R_BE v_E, (n, 3); Euler angles 3-2-1, (n,) rad each."""
-    sp, cp, st, ct, sy, cy = (f(a) for a in (phi, theta, psi) for f in (np.sin, np.cos))
-    along, across = v_E[:, 0] * cy + v_E[:, 1] * sy, v_E[:, 1] * cy - v_E[:, 0] * sy
-    tilted = along * st + v_E[:, 2] * ct
-    return np.column_stack(
-        [along * ct - v_E[:, 2] * st, across * cp + tilted * sp, tilted * cp - across * sp]
-    )
 
 
 def _read(name: str, v: Array, p: dict[str, float]) -> Array:

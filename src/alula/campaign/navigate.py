@@ -9,8 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from alula.aircraft import Aircraft
+from alula.base.arrays import Array
 from alula.base.messages import Message, note, refuse, warn
-from alula.base.project import NavigateSpec
+from alula.base.project import Project
 from alula.campaign.check import Checked, Progress, check_project
 from alula.flight import Flight
 from alula.navigate import (
@@ -89,19 +91,32 @@ def run_navigation(
     for name in logs or checked.flights:
         progress(f"navigating {name}")
         flight = checked.flights[name]
-        found[name], said = _navigate(checked, flight, spec, kind)
+        found[name], said = navigate_flight(
+            checked.project, flight, checked.aircraft_of(flight.id), kind
+        )
         difference[name] = _difference(flight, found[name])
         messages += [*said, *found[name].messages, *_refusals(name, found[name])]
     seconds = {"read": read - begin, "navigate": time.perf_counter() - read}
     return NavigationJob(checked, found, difference, tuple(messages), seconds)
 
 
-def _navigate(
-    checked: Checked, flight: Flight, spec: NavigateSpec, kind: str
+def navigate_flight(
+    project: Project,
+    flight: Flight,
+    aircraft: Aircraft | None,
+    kind: str = "joint",
+    without: Sequence[str] = (),
+    rows: int = ROWS,
 ) -> tuple[Navigation, list[Message]]:
-    reconstruct, aircraft = checked.project.reconstruct, checked.aircraft_of(flight.id)
+    """One flight through a filter, 'joint' or 'pair'; and what was noticed.
+
+    aircraft: where the sensors sit; None: all at one place. without: kinds of readings that are
+    not taken. rows: of the result, at most. Raises BadInput where an inertial channel is missing.
+    """
+    spec, reconstruct = project.navigate, project.reconstruct
     samples = samples_of(flight, {**reconstruct.sensors, **spec.sensors}, reconstruct.imu)
-    readings, said = list(samples.readings), list(samples.messages)
+    readings = [r for r in samples.readings if r.kind not in without]
+    said = list(samples.messages)
     kinds = {r.kind for r in readings}
     if "field" in kinds and spec.field is None:
         said.append(
@@ -134,14 +149,14 @@ def _navigate(
     noise: dict[str, Any] = {"gravity": reconstruct.gravity}
     if samples.gyro is not None:
         noise["gyro"] = samples.gyro
-    every = max(1, -(-len(samples.inertial.t) // ROWS))
+    every = max(1, -(-len(samples.inertial.t) // rows))
     if kind == "pair":
         assert field is not None
         pair = PairSettings(field=field, **noise)
         return navigate_pair(samples.inertial, readings, pair, start, every), said
     if samples.accelerometer is not None:
         noise["accelerometer"] = samples.accelerometer
-    air, gps = (aircraft.sensor_position(n) - aircraft.sensor_position("ax") for n in _ARMS)
+    air, gps = (_arm(aircraft, n) for n in _ARMS)
     joint = JointSettings(
         field=field, gust=(spec.gust,) * 3, gust_length=(spec.gust_length,) * 3,
         air_sensor=(float(air[0]), float(air[1]), float(air[2])),
@@ -149,6 +164,13 @@ def _navigate(
     )  # fmt: skip
     result = navigate_joint(samples.inertial, readings, joint, start, every)
     return replace(result, messages=tuple(heading_said)), said
+
+
+def _arm(aircraft: Aircraft | None, channel: str) -> Array:
+    """Where a channel's sensor sits from the inertial sensor, (3,) m."""
+    if aircraft is None:
+        return np.zeros(3)
+    return np.asarray(aircraft.sensor_position(channel) - aircraft.sensor_position("ax"))
 
 
 def _difference(flight: Flight, found: Navigation) -> dict[str, float]:

@@ -1,4 +1,4 @@
-"""`alula schema`: JSON schemas of the project, aircraft, plan and propeller file, for editors."""
+"""`alula schema`: JSON schemas of the files that people write or carry on, for editors."""
 
 from __future__ import annotations
 
@@ -23,6 +23,7 @@ class Kind(StrEnum):
     aircraft = "aircraft"
     plan = "plan"
     propeller = "propeller"
+    calibration = "calibration"
 
 
 def schema(
@@ -34,7 +35,7 @@ def schema(
     threads: ThreadsOption = 1,
     quiet: QuietOption = False,
 ) -> None:
-    """Print the JSON schema of a project, aircraft, plan or propeller file.
+    """Print the JSON schema of a project, aircraft, plan, propeller or IMU calibration file.
 
     Editors that know JSON schemas for TOML complete and check the files with it.
     """
@@ -54,6 +55,10 @@ def schema(
             from alula.aircraft.schema_blades import PropellerFile
 
             found = PropellerFile.model_json_schema(by_alias=True)
+        elif kind is Kind.calibration:
+            from alula.navigate.calibration.file import CalibrationFile
+
+            found = CalibrationFile.model_json_schema(by_alias=True)
         else:
             from alula.aircraft import aircraft_schema
 

@@ -114,6 +114,29 @@ class Navigation:
             [np.hypot(plane, v[:, 1]), np.arctan2(v[:, 2], v[:, 0]), np.arctan2(v[:, 1], plane)]
         )
 
+    def air_covariance(self) -> Array:
+        """Covariance (n, 3, 3) of what `air` gives, to first order; NaN from the pair: no wind."""
+        n = len(self.t)
+        if "wind" not in self.states:
+            return np.full((n, 3, 3), np.nan)
+        R = rotations(self.q)
+        v = np.einsum("nij,nj->ni", R, self.velocity - self.wind)
+        u, side, w = v.T
+        J = np.zeros((n, 3, self.covariance.shape[-1]))  # of the air velocity, body axes
+        J[:, :, self.states["turn"]] = np.cross(v[:, None, :], np.eye(3)).transpose(0, 2, 1)
+        J[:, :, self.states["velocity"]] = R
+        for part in ("wind", "gust"):
+            J[:, :, self.states[part]] = -R
+        speed2 = np.maximum(np.einsum("ni,ni->n", v, v), 1e-6)
+        plane = np.sqrt(np.maximum(u**2 + w**2, 1e-6))
+        A = np.zeros((n, 3, 3))  # V, alpha, beta from that
+        A[:, 0] = v / np.sqrt(speed2)[:, None]
+        A[:, 1, 0], A[:, 1, 2] = -w / plane**2, u / plane**2
+        A[:, 2, 0], A[:, 2, 1] = -side * u / (plane * speed2), plane / speed2
+        A[:, 2, 2] = -side * w / (plane * speed2)
+        J = A @ J
+        return np.asarray(J @ self.covariance @ J.transpose(0, 2, 1))
+
 
 def rotations(q: Array) -> Array:
     """R_BE (n, 3, 3) of quaternions (n, 4)."""

@@ -12,6 +12,7 @@ import numpy as np
 from alula.aircraft import Aircraft
 from alula.base.arrays import Array
 from alula.base.local_cubic import LocalCubic
+from alula.base.rotation import rotated
 from alula.core import core
 from alula.flight import Flight, Motion
 from alula.reconstruct.problem import Problem
@@ -79,7 +80,7 @@ class Transfer:
             [self.cubic.derivative(np.ascontiguousarray(rates[:, i])) for i in range(3)]
         )
         phi, theta, psi = x[:, 4], x[:, 5], x[:, 6]
-        v = x[:, 1:4] - rotate(phi, theta, psi, np.column_stack([unknown(n) for n in WIND]))
+        v = x[:, 1:4] - rotated(phi, theta, psi, np.column_stack([unknown(n) for n in WIND]))
         h = x[:, 0]
         if not self.still:
             turn = np.cross(rates, self.arm)
@@ -113,16 +114,6 @@ def standard_density(h: Array) -> Array:
     out = np.empty((len(h), 4))
     core.standard_atmosphere(np.ascontiguousarray(h, dtype=np.float64), out)
     return out[:, 2].copy()
-
-
-def rotate(phi: Array, theta: Array, psi: Array, v_E: Array) -> Array:
-    """v_B = R_BE v_E for each sample; v_E (n, 3), Euler angles 3-2-1."""
-    sp, cp, st, ct, sy, cy = (f(a) for a in (phi, theta, psi) for f in (np.sin, np.cos))
-    along, across = v_E[:, 0] * cy + v_E[:, 1] * sy, v_E[:, 1] * cy - v_E[:, 0] * sy
-    tilted = along * st + v_E[:, 2] * ct
-    return np.column_stack(
-        [along * ct - v_E[:, 2] * st, across * cp + tilted * sp, tilted * cp - across * sp]
-    )
 
 
 def _down(phi: Array, theta: Array, arm: Array) -> Array:

@@ -1,4 +1,4 @@
-"""The report of an in-flight calibration: one page, no script, nothing from outside."""
+"""The report of the air data, calibration and angles: one page, no script, nothing from outside."""
 
 from __future__ import annotations
 
@@ -6,7 +6,11 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from alula.airdata.angles import Compared, Kind
 from alula.airdata.inflight_result import InFlightCalibration, Parameter
+from alula.base.messages import Message
+from alula.report.angle_picture import ANGLES_STYLE
+from alula.report.angles_section import angles_section
 from alula.report.html import Html, join, table, tag
 from alula.report.numbers import MISSING, interval, number, plus_minus
 from alula.report.pictures import interval_picture, mark
@@ -25,24 +29,40 @@ _MARKS = {"ok": ("good", "ok"), "weak": ("caution", "weak"),
           "not_identifiable": ("bad", "not identifiable")}  # fmt: skip
 
 
-def air_data_page(name: str, found: Mapping[str, InFlightCalibration]) -> str:
-    """The page as HTML, a section for each log; the same input gives the same text."""
+def air_data_page(
+    name: str,
+    found: Mapping[str, InFlightCalibration],
+    angles: Mapping[str, Mapping[Kind, Compared]] | None = None,
+    refused: Mapping[str, Message] | None = None,
+) -> str:
+    """The page as HTML, a section for each log; the same input gives the same text.
+
+    found: calibrations; angles: comparisons of the flow angles; refused: why there is no
+    calibration; by log.
+    """
+    angles, refused = angles or {}, refused or {}
     body = tag(
         "body",
         tag("a", "Skip to the report", href="#report", class_="skip"),
         tag(
             "main",
-            tag("p", "Alula · air data calibrated in flight", class_="kicker"),
+            tag("p", "Alula · air data", class_="kicker"),
             tag("h1", name),
             *(
-                tag("section", tag("h2", f"Log {id}"), air_data(one), class_="chapter")
-                for id, one in found.items()
+                tag(
+                    "section",
+                    tag("h2", f"Log {id}"),
+                    air_data(found[id]) if id in found else _not_calibrated(refused.get(id)),
+                    angles_section(angles[id]) if id in angles else "",
+                    class_="chapter",
+                )
+                for id in dict.fromkeys([*found, *angles])
             ),
             tag("footer", tag("p", "End of report. Made by Alula; opens offline.")),
             id="report",
         ),
     )
-    return plain_page(f"{name} · air data", body)
+    return plain_page(f"{name} · air data", body, ANGLES_STYLE if angles else "")
 
 
 def air_data(found: InFlightCalibration) -> Html:
@@ -88,6 +108,11 @@ def air_data(found: InFlightCalibration) -> Html:
             *(tag("p", str(m), class_="note") for m in found.messages),
         ]
     )  # fmt: skip
+
+
+def _not_calibrated(why: Message | None) -> Html:
+    words = "" if why is None else f" Expected {why.expected}; found {why.found}. {why.do}"
+    return tag("p", mark("caution", "not calibrated"), words)
 
 
 def _of(output: str) -> float:
