@@ -485,8 +485,15 @@ def test_interrupted(small: SmallProject) -> None:
     assert contents(small.folder) == before
 
 
-@pytest.mark.parametrize("streams", ["stdout", "both"])
-@pytest.mark.parametrize("words", [("check",), ("identify",), ("identify", "--json", "-")])
+@pytest.mark.parametrize(
+    ("words", "streams"),
+    [
+        (("check",), "stdout"),
+        (("check",), "both"),
+        (("identify",), "stdout"),
+        (("identify", "--json", "-"), "both"),
+    ],
+)
 def test_reader_that_goes_away(small: SmallProject, words: tuple[str, ...], streams: str) -> None:
     """`alula ... | head`: no complaint, the command's own exit code, and its files all the same."""
     command, *more = words

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import re
 import subprocess
 import sys
 from pathlib import Path
+from unittest import mock
 
 import pytest
+
+from cli.command import Ran, alula, process
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -34,17 +38,16 @@ def test_readme_commands_exist() -> None:
         "predict", "compare", "calibrate", "airdata", "navigate",
     }  # fmt: skip
     for words in commands:
-        said = run(["alula", words[1], "--help"], ROOT)
-        for option in (word for word in words if word.startswith("--")):
-            assert option in said.stdout
+        said = options_of(words[1])
+        assert said.issuperset(word for word in words if word.startswith("--"))
 
 
 def test_readme_excerpt_is_what_the_demo_prints(tmp_path: Path) -> None:
     """Name, truth and verdict by the letter; value and error as another processor may round."""
     (shown,) = [b.splitlines() for b in blocks("README.md", "") if b.startswith("parameter")]
     done = run(["python", str(ROOT / "examples/demo/demo.py"), "--folder", str(tmp_path)], ROOT)
-    assert done.returncode == 0, done.stderr
-    printed = {line.split()[0]: line.split() for line in done.stdout.splitlines() if line.strip()}
+    assert done.code == 0, done.err
+    printed = {line.split()[0]: line.split() for line in done.out.splitlines() if line.strip()}
     assert shown[0].split() == printed["parameter"]
     for line in shown[1:]:
         words = line.split()
@@ -65,9 +68,9 @@ def test_readme_prediction_is_what_compare_prints() -> None:
         for line in b.splitlines()
         if line.startswith("alula compare")
     ]
-    done = run(command, ROOT)
-    assert done.returncode == 0, done.stderr
-    printed = {line[:19].strip(): line[19:].split() for line in done.stdout.splitlines()}
+    done = process(*command[1:], cwd=ROOT)
+    assert done.code == 0, done.err
+    printed = {line[:19].strip(): line[19:].split() for line in done.out.splitlines()}
     for line in shown[1:]:
         now = printed[line[:19].strip()]
         for old, new in zip(line[19:].split(), now, strict=True):
@@ -99,7 +102,7 @@ def test_tutorial(tmp_path: Path) -> None:
             for line in block.splitlines():
                 if not line.startswith("source "):
                     done = run(line.split(), tmp_path)
-                    assert done.returncode == 0, done.stderr
+                    assert done.code == 0, done.err
         elif language == "diff":
             apply(block, project)
         elif "# confirm" in block:
@@ -138,9 +141,9 @@ def test_flying_tutorial(tmp_path: Path) -> None:
             used.append(words[1])
             done = run(words, tmp_path)
             # the page says that the plan will not tell one parameter, and which
-            assert done.returncode == (1 if words[1] == "plan" else 0), done.stdout + done.stderr
+            assert done.code == (1 if words[1] == "plan" else 0), done.out + done.err
             if words[1] == "plan":
-                (lost,) = [x for x in done.stdout.splitlines() if x.endswith("not told")]
+                (lost,) = [x for x in done.out.splitlines() if x.endswith("not told")]
                 assert f"`{lost.split()[0]}`" in text
     assert used == ["modes", "plan", "fly", "identify", "validate", "export"]
     result = json.loads((tmp_path / "result.json").read_text())
@@ -157,13 +160,13 @@ def test_python_page(tmp_path: Path, monkeypatch) -> None:
     """Its blocks run in order, in a folder with the demo's logs."""
     monkeypatch.setenv("MPLBACKEND", "Agg")
     done = run(["python", str(ROOT / "examples/demo/make_logs.py"), str(tmp_path), "1"], ROOT)
-    assert done.returncode == 0, done.stderr
+    assert done.code == 0, done.err
     code = blocks("docs/python.md", "python")
     assert len(code) > 5
     script = tmp_path / "page.py"
     script.write_text("\n".join(code))
     done = run(["python", "page.py"], tmp_path)
-    assert done.returncode == 0, done.stderr
+    assert done.code == 0, done.err
     assert (tmp_path / "demo.html").exists()
 
 
@@ -188,8 +191,7 @@ def test_python_page(tmp_path: Path, monkeypatch) -> None:
 )
 def test_every_option_is_on_the_page(command: str) -> None:
     page = (ROOT / "docs/command_line.md").read_text()
-    said = run(["alula", command, "--help"], ROOT).stdout
-    options = set(re.findall(r"--[a-z]+", said)) - {"--help", "--output"}
+    options = options_of(command) - {"--help", "--output"}
     assert options
     for option in options:
         assert f"`{option}" in page
@@ -231,15 +233,33 @@ def apply(block: str, file: Path) -> None:
         file.write_text("\n".join(text) + "\n")
 
 
-def run(words: list[str], folder: Path) -> subprocess.CompletedProcess[str]:
-    """One command in a folder, by this Python's environment."""
-    program = {"python": [sys.executable], "alula": [sys.executable, "-m", "alula"]}[words[0]]
-    return subprocess.run(
-        [*program, *words[1:]],
+def options_of(command: str) -> set[str]:
+    """What `alula COMMAND --help` names, from the entry point in this process."""
+    said = alula(command, "--help")
+    assert said.code == 0
+    return set(re.findall(r"--[A-Za-z][A-Za-z-]*", said.out))
+
+
+def run(words: list[str], folder: Path) -> Ran:
+    """One command in a folder, by this Python's environment: `python` by a process of its own,
+    `alula` by its entry point in this one. The demo and `compare` of the README start it for real.
+    """
+    wide = {"COLUMNS": "200", "NO_COLOR": "1"}
+    if words[0] == "alula":
+        with contextlib.chdir(folder), mock.patch.dict(os.environ, wide):
+            return alula(*words[1:])
+    assert words[0] == "python"
+    return started([sys.executable, *words[1:]], folder, wide)
+
+
+def started(words: list[str], folder: Path, more: dict[str, str]) -> Ran:
+    done = subprocess.run(
+        words,
         cwd=folder,
-        env={**os.environ, "COLUMNS": "200", "NO_COLOR": "1"},
+        env={**os.environ, **more},
         capture_output=True,
         text=True,
         timeout=600,
         check=False,
     )
+    return Ran(done.returncode, done.stdout, done.stderr)

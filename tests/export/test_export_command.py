@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import json
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
 from alula.model import load_model
+from cli.command import Ran, alula, process
 from data import data
 from export.consumer import need_jsbsim
 
@@ -19,19 +17,19 @@ MODEL = AIRCRAFT / "sportstar_aero.toml"
 
 def export(*words: object) -> tuple[int, dict]:
     """Exit code and envelope."""
-    done = subprocess.run(
-        [sys.executable, "-m", "alula", "export", *map(str, words), "--json", "-"],
-        capture_output=True,
-        text=True,
-    )
-    assert "Traceback" not in done.stderr
-    return done.returncode, json.loads(done.stdout)
+    return ended(alula("export", *words, "--json", "-"))
+
+
+def ended(ran: Ran) -> tuple[int, dict]:
+    """Exit code and envelope of a command that did not fall over."""
+    assert "Traceback" not in ran.err
+    return ran.code, ran.envelope
 
 
 def test_jsbsim(tmp_path: Path) -> None:
     need_jsbsim()
     words = (MODEL, "--aircraft", AIRCRAFT / "sportstar.toml", "--to", "jsbsim", "--out", tmp_path)
-    code, said = export(*words)
+    code, said = ended(process("export", *words, "--json", "-"))  # as a user starts it
     assert (code, said["status"], said["schema"]) == (0, "ok", "alula.export/1")
     (file,) = said["result"]["files"]
     assert "written by Alula" in Path(file).read_text()

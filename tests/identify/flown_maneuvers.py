@@ -7,6 +7,7 @@ another. Coefficients are body-axes ones.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from alula.identify.measured_maneuver import MeasuredManeuver
 S, SPAN, CHORD, MASS, RHO, G = 11.85, 9.0, 1.21, 600.0, 1.112, 9.80665
 INERTIA = np.array([[1200.0, 0.0, -90.0], [0.0, 1100.0, 0.0], [-90.0, 0.0, 2100.0]])
 INVERSE = np.linalg.inv(INERTIA)
-FINE = 3  # steps a sample
+DT, FINE = 0.02, 3  # s; steps a sample
 ARM = np.array([0.05, 0.0, -0.02])  # from the center of gravity to the moments' reference point
 TRUTH = {
     "CX_0": -0.03, "CX_alpha": 0.15, "CX_alpha2": 2.5,
@@ -54,6 +55,11 @@ def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     )
 
 
+@cache
+def _parts(name: str) -> list[str]:
+    return name.split("_")
+
+
 def _coefficients(c: dict[str, float], x: np.ndarray, u: dict[str, float]) -> dict[str, float]:
     V = np.linalg.norm(x[:3])
     alpha, beta = np.arctan2(x[2], x[0]), np.arcsin(x[1] / V)
@@ -63,7 +69,7 @@ def _coefficients(c: dict[str, float], x: np.ndarray, u: dict[str, float]) -> di
     }  # fmt: skip
     out = dict.fromkeys(("CX", "CY", "CZ", "Cl", "Cm", "Cn"), 0.0)
     for name, v in c.items():
-        coefficient, term = name.split("_")
+        coefficient, term = _parts(name)
         out[coefficient] += v * value[term]
     return out
 
@@ -82,26 +88,29 @@ def _forces(
     return (aero + np.array([thrust, 0.0, 0.0])) / MASS, acceleration
 
 
-def flown(
-    controls: Callable[[np.ndarray], dict[str, np.ndarray]],
-    *,
-    seconds: float = 20.0,
-    id: str = "one",
-    seed: int | None = None,
-    truth: dict[str, float] | None = None,
-    theta0: float = 0.05,
-    feedback: float = 0.0,
-    held_out: bool = False,
-) -> MeasuredManeuver:
-    """A maneuver at 50 Hz, noisy where a seed is given. controls(t) gives de da dr (n,).
+Flight = tuple[np.ndarray, dict[str, np.ndarray], np.ndarray, np.ndarray]
+_FLOWN: dict[tuple[object, ...], Flight] = {}
 
-    feedback: elevator per pitch angle about theta0, of a pilot who holds an unstable aircraft.
+
+def _flight(
+    given: dict[str, np.ndarray], c: dict[str, float], theta0: float, feedback: float
+) -> Flight:
+    """States (n, 8), controls, specific forces and angular accelerations (n, 3).
+
+    Without noise: integrated once for all seeds, which takes longer than what is tested with it.
     """
-    dt = 0.02
-    t = np.arange(0.0, seconds + 1e-9, dt)
-    c = TRUTH if truth is None else truth
-    given = {k: np.zeros_like(t) for k in ("de", "da", "dr")} | controls(t)
-    x = np.empty((len(t), 8))
+    key = (*(v.tobytes() for v in given.values()), *c.items(), theta0, feedback)
+    if key not in _FLOWN:
+        _FLOWN[key] = _integrated(given, c, theta0, feedback)
+    x, drive, f, acceleration = _FLOWN[key]
+    return x.copy(), {k: v.copy() for k, v in drive.items()}, f.copy(), acceleration.copy()
+
+
+def _integrated(
+    given: dict[str, np.ndarray], c: dict[str, float], theta0: float, feedback: float
+) -> Flight:
+    n = len(given["de"])
+    x = np.empty((n, 8))
     V0, alpha0 = 45.0, 0.05
     x[0] = [V0 * np.cos(alpha0), 0.0, V0 * np.sin(alpha0), 0.0, 0.0, 0.0, 0.0, theta0]
     drive = {k: v.copy() for k, v in given.items()}
@@ -124,12 +133,12 @@ def flown(
             ]
         )
 
-    for k in range(len(t) - 1):
+    for k in range(n - 1):
         if feedback:
             drive["de"][k + 1] = given["de"][k + 1] + feedback * (x[k, 7] - theta0) + 0.3 * x[k, 4]
         a = {n: float(drive[n][k]) for n in drive}
         slope = {n: (float(drive[n][k + 1]) - a[n]) / FINE for n in drive}
-        y, h = x[k], dt / FINE
+        y, h = x[k], DT / FINE
         for part in range(FINE):
             u = [{n: a[n] + slope[n] * (part + at) for n in a} for at in (0.0, 0.5, 1.0)]
             k1 = rate(y, u[0])
@@ -137,9 +146,30 @@ def flown(
             k3 = rate(y + 0.5 * h * k2, u[1])
             y = y + h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + rate(y + h * k3, u[2]))
         x[k + 1] = y
+    both = [_forces(c, x[k], {m: drive[m][k] for m in drive}, 700.0) for k in range(n)]
+    return x, drive, np.array([b[0] for b in both]), np.array([b[1] for b in both])
+
+
+def flown(
+    controls: Callable[[np.ndarray], dict[str, np.ndarray]],
+    *,
+    seconds: float = 20.0,
+    id: str = "one",
+    seed: int | None = None,
+    truth: dict[str, float] | None = None,
+    theta0: float = 0.05,
+    feedback: float = 0.0,
+    held_out: bool = False,
+) -> MeasuredManeuver:
+    """A maneuver at 50 Hz, noisy where a seed is given. controls(t) gives de da dr (n,).
+
+    feedback: elevator per pitch angle about theta0, of a pilot who holds an unstable aircraft.
+    """
+    t = np.arange(0.0, seconds + 1e-9, DT)
+    c = TRUTH if truth is None else truth
+    given = {k: np.zeros_like(t) for k in ("de", "da", "dr")} | controls(t)
+    x, drive, f, acceleration = _flight(given, c, theta0, feedback)
     V = np.linalg.norm(x[:, :3], axis=1)
-    both = [_forces(c, x[k], {n: drive[n][k] for n in drive}, 700.0) for k in range(len(t))]
-    f, acceleration = np.array([b[0] for b in both]), np.array([b[1] for b in both])
     exact = {
         "V": V, "alpha": np.arctan2(x[:, 2], x[:, 0]), "beta": np.arcsin(x[:, 1] / V),
         "p": x[:, 3], "q": x[:, 4], "r": x[:, 5], "phi": x[:, 6], "theta": x[:, 7],

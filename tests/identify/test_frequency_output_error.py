@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -33,7 +34,9 @@ def elevator(t):
     return 0.03 * np.sin(phase) * np.sin(np.pi * s) ** 0.5
 
 
-def flown(seed, delay=DELAY, noise=1.0, trim=0.04):
+@cache
+def motion(delay, trim):
+    """Angle of attack and pitch rate (2, n), without noise."""
     t = DT * np.arange(1001)
 
     def rate(s, x):
@@ -44,7 +47,13 @@ def flown(seed, delay=DELAY, noise=1.0, trim=0.04):
             TRUE["Ma"] * a + TRUE["Mq"] * q + TRUE["Mde"] * de,
         ]
 
-    x = solve_ivp(rate, (0, t[-1]), [trim, 0.01], t_eval=t, rtol=1e-9, atol=1e-11, max_step=0.02).y
+    start = [trim, 0.01]
+    return solve_ivp(rate, (0, t[-1]), start, t_eval=t, rtol=1e-9, atol=1e-11, max_step=0.02).y
+
+
+def flown(seed, delay=DELAY, noise=1.0, trim=0.04):
+    t = DT * np.arange(1001)
+    x = motion(delay, trim)
     rng = np.random.default_rng(seed)
     channels = {
         "alpha": x[0] + noise * 0.003 * rng.standard_normal(len(t)),

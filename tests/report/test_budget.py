@@ -7,6 +7,7 @@ import json
 import re
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -62,6 +63,12 @@ def campaign(count: int, rate: float) -> ReportInput:
     )
 
 
+@cache
+def page(count: int, rate: float) -> str:
+    """The campaign's page; several tests look at the same one."""
+    return render(campaign(count, rate))
+
+
 def plots(text: str) -> dict[str, Any]:
     found = re.search(r'id="alula-plots">(.*?)</script>', text, re.S)
     assert found
@@ -79,7 +86,7 @@ def samples(data: dict[str, Any], figure: dict[str, Any]) -> int:
 
 @pytest.mark.parametrize(("count", "rate"), [(3, 1000.0), (44, 50.0), (1000, 10.0)])
 def test_page_stays_under_3_megabytes(count: int, rate: float) -> None:
-    text = render(campaign(count, rate))
+    text = page(count, rate)
     assert len(text.encode()) < 3_000_000
     data = plots(text)
     assert len(data["figures"]) > 50
@@ -88,11 +95,11 @@ def test_page_stays_under_3_megabytes(count: int, rate: float) -> None:
 
 
 def test_the_room_is_used() -> None:
-    assert len(render(campaign(44, 50.0)).encode()) > 2_000_000
+    assert len(page(44, 50.0).encode()) > 2_000_000
 
 
 def test_what_is_left_out_is_named_and_the_held_out_is_drawn() -> None:
-    text = render(campaign(44, 50.0))
+    text = page(44, 50.0)
     drawn = {f["group"] for f in plots(text)["figures"]}
     assert "maneuver_0002" in drawn
     said = re.search(r"Plots of (\d+) of 44 maneuvers are drawn.*?</p>", text, re.S)
@@ -106,7 +113,7 @@ def test_what_is_left_out_is_named_and_the_held_out_is_drawn() -> None:
 
 
 def test_long_tables_say_what_they_leave_out() -> None:
-    text = render(campaign(1000, 10.0))
+    text = page(1000, 10.0)
     assert "600 further rows are left out" in text  # of the 1000 maneuvers
     assert "The channels of 875 of 1000 logs are left out" in text  # eight channels each
 

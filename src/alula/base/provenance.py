@@ -5,6 +5,7 @@ from __future__ import annotations
 import platform
 import subprocess
 import sys
+from functools import cache
 from importlib import metadata
 from pathlib import Path
 from typing import Any
@@ -29,13 +30,19 @@ def provenance(seed: int | None) -> dict[str, Any]:
 
 def versions() -> dict[str, str]:
     """Versions of Python, the platform and the libraries that compute."""
-    out = {"python": platform.python_version(), "platform": sys.platform}
+    return {"python": platform.python_version(), "platform": sys.platform} | dict(_libraries())
+
+
+@cache
+def _libraries() -> tuple[tuple[str, str], ...]:
+    """Name and version of each that is installed; a process cannot change them."""
+    out = []
     for name in _LIBRARIES:
         try:
-            out[name] = metadata.version(name)
+            out.append((name, metadata.version(name)))
         except metadata.PackageNotFoundError:
             continue
-    return out
+    return tuple(out)
 
 
 def commit() -> str | None:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
-from typing import NoReturn
+from collections.abc import Callable, Sequence
+from functools import cache
+from typing import Any, NoReturn
 
 import typer
 
@@ -82,11 +83,17 @@ def _options(
     """
 
 
+@cache
+def _group() -> Callable[..., Any]:
+    """The commands with their options, which `app()` would read from the functions at each call."""
+    return typer.main.get_command(app)
+
+
 def main(arguments: Sequence[str] | None = None) -> NoReturn:
     """Entry point of the installed command; arguments: instead of sys.argv's."""
     words = list(sys.argv[1:] if arguments is None else arguments)
     try:
-        code = app(words, prog_name="alula", standalone_mode=False) or 0
+        code = _group()(words, prog_name="alula", standalone_mode=False) or 0
     except _UsageError as error:
         if not words:  # what it carries is the help
             typer.echo(str(error), err=True)

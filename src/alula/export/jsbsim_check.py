@@ -223,7 +223,9 @@ def _in_jsbsim(
             command_names=list(commands), commands=np.array(list(commands.values())).T,
             dt=_DT, substeps=_SUBSTEPS, outputs=outputs,
         )  # fmt: skip
-        words = [sys.executable, "-m", "alula.export.jsbsim_child"]
+        # by its file, not as a module of the package, whose other modules take longer to load; -P:
+        # the folder holds a jsbsim.py of Alula's own
+        words = [sys.executable, "-P", str(Path(__file__).with_name("jsbsim_child.py"))]
         done = subprocess.run(
             [*words, str(folder), name, str(given), str(out)],
             capture_output=True, text=True, timeout=300, check=False,

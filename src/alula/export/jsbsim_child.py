@@ -1,6 +1,6 @@
 """Flies an exported aircraft in JSBSim, in a process of its own: it prints, and it may crash.
 
-python -m alula.export.jsbsim_child FOLDER NAME IN.npz OUT.npz
+python -P jsbsim_child.py FOLDER NAME IN.npz OUT.npz; it loads nothing else of Alula.
 """
 
 from __future__ import annotations
@@ -45,11 +45,13 @@ def main(folder: str, name: str, given: str, out: str) -> None:
     values = np.empty((len(commands), len(outputs)))
     for i in range(len(commands)):
         if i:
+            before, change = commands[i - 1], commands[i] - commands[i - 1]
+            moving = np.flatnonzero(change).tolist()
+            for key, x in zip(names, before, strict=True):
+                fdm[key] = x
             for j in range(substeps):
-                part = j / substeps
-                row = commands[i - 1] + part * (commands[i] - commands[i - 1])
-                for key, x in zip(names, row, strict=True):
-                    fdm[key] = x
+                for k in moving:
+                    fdm[names[k]] = before[k] + j / substeps * change[k]
                 fdm.run()
         values[i] = [fdm[key] for key in outputs]
     np.savez(Path(out), values=values)

@@ -18,6 +18,7 @@ import difflib
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -202,7 +203,13 @@ def parse(formula: str, tables: Mapping[str, LookupTable] | None = None) -> tupl
             found=f"{len(formula)} characters" if formula.strip() else "nothing",
             do="Write a formula such as '1 + alpha + qhat + de'.",
         )
-    return _Parser(formula, tables or {}).sum()
+    return _Parser(formula, tables).sum() if tables else _parse_plain(formula)
+
+
+@lru_cache(maxsize=1024)
+def _parse_plain(formula: str) -> tuple[Term, ...]:
+    """Without tables. Estimators ask for the same few formulas thousands of times."""
+    return _Parser(formula, {}).sum()
 
 
 def check_lift(coefficient: str, terms: Iterable[Term], where: str) -> None:

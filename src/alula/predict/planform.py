@@ -85,13 +85,15 @@ def exposed_area(surface: LiftingSurface, bodies: Sequence[Body]) -> float:
     inside_of = [BodyShape(body) for body in bodies]
     edges = np.linspace(0.0, 1.0, 401)
     along = (np.arange(64) + 0.5) / 64
-    total = 0.0
-    for eta in 0.5 * (edges[1:] + edges[:-1]):
-        lead, chord, _ = surface.at(float(eta))
-        points = np.repeat(lead[None, :], 64, axis=0)
-        points[:, 0] -= along * chord
-        inside = np.any([shape.contains(points) for shape in inside_of], axis=0)
-        total += chord * (1.0 - float(np.mean(inside))) * arc[-1] / 400
+    stations = [surface.at(float(eta)) for eta in 0.5 * (edges[1:] + edges[:-1])]
+    chords = np.array([chord for _, chord, _ in stations])
+    points = np.repeat([lead for lead, _, _ in stations], len(along), axis=0)
+    points[:, 0] -= np.outer(chords, along).ravel()
+    inside = np.zeros(len(points), dtype=bool)
+    for shape in inside_of:
+        inside |= shape.contains(points)
+    outside = 1.0 - inside.reshape(len(chords), len(along)).mean(axis=1)
+    total = float(np.sum(chords * outside)) * float(arc[-1]) / len(chords)
     return total * (2.0 if surface.mirror else 1.0)
 
 

@@ -35,13 +35,14 @@ def store_for(report: ReportInput, sections: Callable[[FigureStore], Html]) -> F
     text = sections(survey)
     found = survey.surveys
     if not found:
-        return FigureStore(LEAST)
+        return FigureStore(LEAST, still=survey.still)
     markup = sum(s.markup for s in found)
     room = MOST_BYTES - _FRAME - (len(text.encode()) - markup) - _spare(found)
     chosen = _chosen(report, found, room)
     kept = [s for s in found if (s.part, s.group) in chosen]
     drawn = {part: frozenset(g for p, g in chosen if p == part) for part in _PARTS}
-    return FigureStore(_most(kept, room), None if len(kept) == len(found) else drawn)
+    every = len(kept) == len(found)
+    return FigureStore(_most(kept, room), None if every else drawn, still=survey.still)
 
 
 def left_out(report: ReportInput, figures: FigureStore, part: str) -> Iterable[Html]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
@@ -97,12 +97,14 @@ class FigureStore:
     most: samples of a figure above which the page carries fewer than there are, and says so.
     drawn: the groups of each part of the page that are drawn; None: all. part: of the page, to
     which what is added now belongs. counting: only the surveys are wanted, nothing is carried.
+    still: markup without plots that the survey has made and the page takes over.
     """
 
     most: int
     drawn: Mapping[str, frozenset[str]] | None = None
     part: str = ""
     counting: bool = False
+    still: dict[str, Html] = field(default_factory=dict)
     thinned: set[str] = field(default_factory=set)
     surveys: list[Survey] = field(default_factory=list)
     _arrays: dict[str, str] = field(default_factory=dict)
@@ -112,6 +114,12 @@ class FigureStore:
     def draws(self, group: str) -> bool:
         """Are the figures of this group drawn in the present part?"""
         return self.drawn is None or group in self.drawn.get(self.part, frozenset())
+
+    def once(self, key: str, make: Callable[[], Html]) -> Html:
+        """Markup without plots, by a name of its own; made only where there is none yet."""
+        if key not in self.still:
+            self.still[key] = make()
+        return self.still[key]
 
     def add(self, figure: Figure) -> Html:
         """The figure's place on the page; nothing where its group is left out."""

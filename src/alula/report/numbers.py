@@ -119,4 +119,5 @@ def percent(ratio: float, digits: int = 2) -> str:
 def rms(values: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> float:
     """Root mean square of the finite values; NaN where there are none."""
     finite = values[np.isfinite(values)]
-    return float(np.sqrt(np.mean(finite**2))) if finite.size else math.nan
+    # np.mean does the same sum, but takes three times as long over a short array
+    return math.sqrt(np.add.reduce(finite**2) / finite.size) if finite.size else math.nan

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import hashlib
+from collections.abc import Callable
 from importlib.resources import files
 
 from alula.report.budget import left_out, store_for
@@ -82,15 +83,19 @@ def render(report: ReportInput) -> str:
 def _sections(report: ReportInput, figures: FigureStore) -> list[tuple[str, str, Html]]:
     """(anchor, title, content) of each section that has something to show."""
     found: list[tuple[str, str, Html]] = []
+
+    def still(key: str, title: str, make: Callable[[], Html]) -> None:
+        found.append((key, title, figures.once(key, make)))
+
     if report.validation is not None:
-        found.append(("evidence", "Evidence index", evidence(report.validation)))
+        flown = report.validation
+        still("evidence", "Evidence index", lambda: evidence(flown))
         figures.part = "flown"
-        overlays = flights(report.validation, figures)
-        found.append(("flown", "Model and flight side by side", overlays))
+        found.append(("flown", "Model and flight side by side", flights(flown, figures)))
     if report.cards:
-        found.append(("log", "Log card", log_cards(report)))
+        still("log", "Log card", lambda: log_cards(report))
     if report.maneuvers:
-        found.append(("maneuvers", "Maneuvers", maneuvers(report)))
+        still("maneuvers", "Maneuvers", lambda: maneuvers(report))
     if report.navigation:
         figures.part = "navigation"
         filtered = navigation(report.navigation, figures)
@@ -102,24 +107,26 @@ def _sections(report: ReportInput, figures: FigureStore) -> list[tuple[str, str,
         title = "Motion as recorded" if recorded else "Flight path reconstruction"
         found.append(("reconstruction", title, content))
     if report.identification is not None and report.identification.parameters:
+        result = report.identification
         figures.part = "coefficients"
-        fits = coefficients(report.identification, figures)
+        fits = coefficients(result, figures)
         found.append(("coefficients", "Coefficients: measured and model", fits))
-        if report.identification.histories:
+        if result.histories:
             figures.part = "histories"
-            over_time = histories(report.identification, figures)
-            found.append(("histories", "Estimates over time", over_time))
-        found.append(("parameters", "Parameters", parameters(report.identification)))
+            found.append(("histories", "Estimates over time", histories(result, figures)))
+        still("parameters", "Parameters", lambda: parameters(result))
         if report.reidentified:
-            found.append(("repeated", "Identified again", repeated(report.reidentified)))
-        found.append(("correlation", "Correlation", correlation(report.identification)))
+            again = report.reidentified
+            still("repeated", "Identified again", lambda: repeated(again))
+        still("correlation", "Correlation", lambda: correlation(result))
     if report.shape is not None and report.shape.geometry is not None:
         from alula.report.sections import geometry as shapes  # slow to load
 
-        neutral = shapes.identified_neutral_point(report.shape, report.identification)
-        found.append(("geometry", "Geometry", shapes.geometry(report.shape, neutral)))
-    found.append(("messages", "Messages", messages(report)))
-    found.append(("provenance", "Provenance", provenance(report)))
+        shape = report.shape
+        neutral = shapes.identified_neutral_point(shape, report.identification)
+        still("geometry", "Geometry", lambda: shapes.geometry(shape, neutral))
+    still("messages", "Messages", lambda: messages(report))
+    still("provenance", "Provenance", lambda: provenance(report))
     for k, (key, title, content) in enumerate(found):
         if key in ("flown", "navigation", "reconstruction", "coefficients", "histories"):
             found[k] = (key, title, join([_HOW_TO, *left_out(report, figures, key), content]))

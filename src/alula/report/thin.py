@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from alula.base.arrays import Array
 from alula.flight.gaps import FACTOR
@@ -20,6 +22,8 @@ def breaks(t: Array) -> Indices:
     if len(t) < 3:
         return np.empty(0, dtype=np.intp)
     dt = np.diff(t)
+    if dt.max() <= FACTOR * dt.min():  # so no step is far above the median
+        return np.empty(0, dtype=np.intp)
     return np.flatnonzero(dt > FACTOR * np.median(dt)).astype(np.intp) + 1
 
 
@@ -48,12 +52,13 @@ def kept_samples(
     # Columns often have their extremes at the same sample, so more stretches fit than could be
     # promised: the most of them that stay within `most` are searched for, unless so many samples
     # are left out that the search would take longer than its gain is worth.
+    sought = [_Sought.of(column) for column in columns]
     fewest = max((most - len(always)) // (3 * len(columns)), 1)
     too_many = most if n <= 50 * most else fewest
-    best = _kept(columns, fewest, always)
+    best = _kept(sought, fewest, always)
     while too_many - fewest > max(fewest // 16, 1):
         middle = (fewest + too_many) // 2
-        tried = _kept(columns, middle, always)
+        tried = _kept(sought, middle, always)
         if len(tried) <= most:
             fewest, best = middle, tried
         else:
@@ -61,18 +66,41 @@ def kept_samples(
     return best
 
 
-def _kept(columns: tuple[Array, ...], stretches: int, always: Indices) -> Indices:
-    n = len(columns[0])
+class _Sought(NamedTuple):
+    """A column (n,) as its lowest and its highest samples are sought; None: nothing is missing."""
+
+    low: Array
+    high: Array
+    missing: NDArray[np.bool_] | None
+
+    @classmethod
+    def of(cls, column: Array) -> _Sought:
+        missing = np.isnan(column)
+        if not missing.any():
+            return cls(column, column, None)
+        low, high = np.where(missing, np.inf, column), np.where(missing, -np.inf, column)
+        return cls(low, high, missing)
+
+
+def _kept(columns: Sequence[_Sought], stretches: int, always: Indices) -> Indices:
+    n = len(columns[0].low)
     length = -(-n // stretches)
     first = length * np.arange(-(-n // length))  # of each stretch
-    keep = [always]
-    for column in columns:
+
+    def pieces(values: NDArray[Any]) -> NDArray[Any]:
         # the last stretch is filled up with its last value, which changes no extreme
-        pieces = np.pad(column, (0, length * len(first) - n), "edge").reshape(len(first), length)
-        missing = np.isnan(pieces)
-        keep += [
-            (first + np.argmin(np.where(missing, np.inf, pieces), axis=1))[~missing.all(axis=1)],
-            (first + np.argmax(np.where(missing, -np.inf, pieces), axis=1))[~missing.all(axis=1)],
-            (first + np.argmax(missing, axis=1))[missing.any(axis=1)],
-        ]
-    return np.unique(np.concatenate(keep)).astype(np.intp)
+        full = np.empty(length * len(first), values.dtype)
+        full[:n], full[n:] = values, values[-1]
+        return full.reshape(len(first), length)
+
+    keep = np.zeros(n, dtype=bool)
+    keep[always] = True
+    for low, high, missing in columns:
+        lowest, highest = first + pieces(low).argmin(axis=1), first + pieces(high).argmax(axis=1)
+        if missing is not None:
+            gaps = pieces(missing)
+            some, every = gaps.any(axis=1), gaps.all(axis=1)
+            keep[(first + gaps.argmax(axis=1))[some]] = True
+            lowest, highest = lowest[~every], highest[~every]
+        keep[lowest] = keep[highest] = True
+    return np.flatnonzero(keep).astype(np.intp)

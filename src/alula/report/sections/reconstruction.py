@@ -21,18 +21,21 @@ def reconstruction(result: Reconstruction, figures: FigureStore) -> Html:
     level = "good" if result.converged else "bad"
     method = "" if result.method == "none" else f"Method: {method_words(result.method)}. "
     words = method + sentence(result.status)
+    findings = None
+    if result.method != "none":
+        findings = figures.once("findings", lambda: _findings(result))
     return join(
         [
             tag("p", mark(level, words, long=True)),
-            *([] if result.method == "none" else _findings(result)),
+            findings,
             *(_segment(s, figures) for s in result.segments if figures.draws(s.maneuver.id)),
         ]
     )
 
 
-def _findings(result: Reconstruction) -> list[Html]:
+def _findings(result: Reconstruction) -> Html:
     """What was estimated, and whether it agrees with the data."""
-    return [_constants(result), _nis(result), _mismatch(result), _whiteness(result)]
+    return join([_constants(result), _nis(result), _mismatch(result), _whiteness(result)])
 
 
 def _constants(result: Reconstruction) -> Html:
