@@ -163,7 +163,7 @@ def _result(
         neutral_point=frozen(neutral),
         symmetric=lattice.right > 0,
         panels=lattice,
-        circulation=frozen(found["circulation"][:, 0]),
+        circulation=frozen(found["circulation"][0]),
         circulation_rates=frozen(found["circulation_rates"]),
         force=frozen(found["force"]),
         span_loads=_span_loads(lattice, found),
