@@ -96,28 +96,30 @@ struct UnitLoads {
   const WindLattice& wind;
   Points leg, leg_arm;  // of each vertex: the leg to the trailing edge, and its middle
 
-  UnitLoads(const Lattice& of, const WindLattice& in) : lattice(of), wind(in) {
+  UnitLoads(const Lattice& of, const WindLattice& in)
+      : lattice(of), wind(in), leg(in.vertices.size()), leg_arm(in.vertices.size()) {
     for (const Row& row : of.rows)
       for (int k = 0; k <= row.panels; ++k) {
-        const Point vertex = in.vertices[row.vertex + k], edge = in.trailing[row.trailing + k];
-        leg.push_back(edge - vertex);
-        leg_arm.push_back(0.5 * (edge + vertex));
-        leg.back().x *= in.B, leg_arm.back().x *= in.B;
+        const int v = row.vertex + k;
+        leg[v] = in.trailing[row.trailing + k] - in.vertices[v];
+        leg_arm[v] = 0.5 * (in.trailing[row.trailing + k] + in.vertices[v]);
+        leg[v].x *= in.B, leg_arm[v].x *= in.B;
       }
   }
 
   PanelLoads in(const Points& at_bound, const Points& at_leg) const {
-    PanelLoads out;
-    for (const Row& row : lattice.rows)
+    PanelLoads out(at_bound.size());
+    for (const Row& row : lattice.rows) {
+      if (row.panel >= lattice.solved()) break;
       for (int k = 0; k < row.panels; ++k) {
         const int i = row.panel + k, v = row.vertex + k;
-        if (i == lattice.solved()) return out;
         const Point bound = cross(at_bound[i], wind.bound[i]);
         const Point first = cross(at_leg[v], leg[v]), last = cross(at_leg[v + 1], leg[v + 1]);
-        out.push_back(
-            {bound + last - first,
-             cross(wind.arm[i], bound) + cross(leg_arm[v + 1], last) - cross(leg_arm[v], first)});
+        out[i].force = bound + last - first;
+        out[i].moment =
+            cross(wind.arm[i], bound) + cross(leg_arm[v + 1], last) - cross(leg_arm[v], first);
       }
+    }
     return out;
   }
 };

@@ -123,67 +123,83 @@ inline void horseshoes(const FromVertex& from, const FromVertex& to, int padded,
   }
 }
 
-// Calls use(first panel, count, velocities at the tile by panel) until all horseshoes were had.
-template <class Use>
-void induce(const Lattice& lattice, const WindLattice& wind, const Tile& tile, Use&& use) {
-  FromVertex one, other;
-  FromVertex *a = &one, *b = &other;
-  std::vector<Field> block(kBlock);
-  std::vector<FromVertex> edges;  // of the rows of one side of a surface
-  int edges_from = -1;
-  for (const Row& row : lattice.rows) {
-    const double surface = row.surface;
-    if (edges_from != row.trailing) {
-      edges_from = row.trailing;
-      edges.resize(row.panels + 1);
-      for (int k = 0; k <= row.panels; ++k)
-        see_edge(tile, wind.trailing[edges_from + k], surface, wind.core2, edges[k]);
+// The horseshoes' velocities at a tile, block after block along the rows:
+// for (Blocks b(lattice, wind, tile); b.next();) use(b.panel, b.count, b.velocity);
+class Blocks {
+ public:
+  int panel = 0, count = 0;  // the block's first panel, and how many it has
+  std::vector<Field> velocity = std::vector<Field>(kBlock);
+
+  Blocks(const Lattice& lattice, const WindLattice& wind, const Tile& tile)
+      : lattice_(lattice), wind_(wind), tile_(tile) {}
+
+  bool next() {
+    panel += count;
+    if (panel == lattice_.panels()) return false;
+    const Row* row = &lattice_.rows[row_];
+    if (panel == row->panel + row->panels) row = &lattice_.rows[++row_];
+    const double surface = row->surface, core2 = wind_.core2;
+    const int done = panel - row->panel;
+    if (edges_from_ != row->trailing) {
+      edges_from_ = row->trailing;
+      edges_.resize(row->panels + 1);
+      for (int k = 0; k <= row->panels; ++k)
+        see_edge(tile_, wind_.trailing[edges_from_ + k], surface, core2, edges_[k]);
     }
-    see(tile, wind.vertices[row.vertex], edges[0], surface, wind.core2, *a);
-    for (int done = 0; done < row.panels;) {
-      const int count = std::min(kBlock, row.panels - done);
-      for (int k = 0; k < count; ++k) {
-        const int end = done + k + 1;
-        see(tile, wind.vertices[row.vertex + end], edges[end], surface, wind.core2, *b);
-        horseshoes(*a, *b, tile.padded, wind.B, block[k]);
-        std::swap(a, b);
-      }
-      use(row.panel + done, count, block.data());
-      done += count;
+    const Point* vertex = &wind_.vertices[row->vertex];
+    if (done == 0) see(tile_, vertex[0], edges_[0], surface, core2, last_[panel % 2]);
+    count = std::min(kBlock, row->panels - done);
+    for (int k = 0; k < count; ++k) {
+      FromVertex &a = last_[(panel + k) % 2], &b = last_[(panel + k + 1) % 2];
+      see(tile_, vertex[done + k + 1], edges_[done + k + 1], surface, core2, b);
+      horseshoes(a, b, tile_.padded, wind_.B, velocity[k]);
     }
+    return true;
   }
-}
+
+ private:
+  const Lattice& lattice_;
+  const WindLattice& wind_;
+  const Tile& tile_;
+  FromVertex last_[2];             // by turns
+  std::vector<FromVertex> edges_;  // of the rows of one side of a surface
+  int row_ = 0, edges_from_ = -1;
+};
 
 // Adds the panels' velocities times their circulation, eight registers of one component at a time.
 inline void add_up(const Field* block, int count, int padded, const double* circulation,
                    Field& sum) {
-  constexpr int kAtOnce = 8;
-  static_assert(kTile % (kAtOnce * kLanes) == 0);
+  constexpr int kAtOnce = 8 * kLanes;
+  static_assert(kTile % kAtOnce == 0);
   for (const auto component : {&Field::x, &Field::y, &Field::z})
-    for (int i = 0; i < padded; i += kAtOnce * kLanes) {
-      Pack s[kAtOnce];
-      for (int j = 0; j < kAtOnce; ++j) s[j] = Pack::load(sum.*component + i + j * kLanes);
-      for (int k = 0; k < count; ++k)
-        for (int j = 0; j < kAtOnce; ++j)
-          s[j] += Pack(circulation[k]) * Pack::load(block[k].*component + i + j * kLanes);
-      for (int j = 0; j < kAtOnce; ++j) s[j].store(sum.*component + i + j * kLanes);
+    for (int i = 0; i < padded; i += kAtOnce) {
+      double* to = sum.*component + i;
+      Pack s[8];
+#pragma GCC unroll 8
+      for (int j = 0; j < 8; ++j) s[j] = Pack::load(to + j * kLanes);
+      for (int k = 0; k < count; ++k) {
+        const double* from = block[k].*component + i;
+#pragma GCC unroll 8
+        for (int j = 0; j < 8; ++j) s[j] += Pack(circulation[k]) * Pack::load(from + j * kLanes);
+      }
+#pragma GCC unroll 8
+      for (int j = 0; j < 8; ++j) s[j].store(to + j * kLanes);
     }
 }
 
 // Velocities at the first `count` points that the circulations of all panels induce, by column.
 inline std::vector<Points> induced(const Lattice& lattice, const WindLattice& wind,
                                    const Points& points, int count, const Columns& circulation) {
-  std::vector<Points> out(circulation.size());
-  std::vector<Field> sum(circulation.size());
+  const std::size_t columns = circulation.size();
+  std::vector<Points> out(columns, Points(count));
   for (int begin = 0; begin < count; begin += kTile) {
     const Tile tile(points, wind.surface, begin, count);
-    std::fill(sum.begin(), sum.end(), Field{});
-    induce(lattice, wind, tile, [&](int first, int n, const Field* block) {
-      for (std::size_t c = 0; c < sum.size(); ++c)
-        add_up(block, n, tile.padded, circulation[c].data() + first, sum[c]);
-    });
-    for (std::size_t c = 0; c < sum.size(); ++c)
-      for (int i = 0; i < tile.count; ++i) out[c].push_back(sum[c].get(i));
+    std::vector<Field> sum(columns);
+    for (Blocks b(lattice, wind, tile); b.next();)
+      for (std::size_t c = 0; c < columns; ++c)
+        add_up(b.velocity.data(), b.count, tile.padded, &circulation[c][b.panel], sum[c]);
+    for (std::size_t c = 0; c < columns; ++c)
+      for (int i = 0; i < tile.count; ++i) out[c][begin + i] = sum[c].get(i);
   }
   return out;
 }

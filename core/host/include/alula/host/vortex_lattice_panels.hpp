@@ -92,23 +92,19 @@ inline WindLattice along_the_wind(const Lattice& lattice, const Condition& at) {
   w.core2 = at.core * at.core;
   // About the reference point, so that a far origin costs no digits.
   const auto arms = [&](const Points& points) { return rotated(w.to_wind, points, at.point); };
-  const auto scaled = [&](Points points) {
-    for (Point& p : points) p.x /= w.B;
-    return points;
-  };
-  const Points vertices = arms(lattice.vertices);
-  w.control_arm = arms(lattice.control);
-  w.arm = arms(lattice.middle);
-  w.vertices = scaled(vertices);
-  w.trailing = scaled(arms(lattice.trailing));
-  w.control = scaled(w.control_arm);
-  w.middle = scaled(w.arm);
+  w.vertices = arms(lattice.vertices);
+  w.trailing = arms(lattice.trailing);
+  w.control = w.control_arm = arms(lattice.control);
+  w.middle = w.arm = arms(lattice.middle);
   w.normal = rotated(w.to_wind, lattice.normal);
+  w.bound.resize(lattice.panels()), w.surface.resize(lattice.panels());
   for (const Row& row : lattice.rows)
-    for (int v = row.vertex; v < row.vertex + row.panels; ++v) {
-      w.bound.push_back(vertices[v + 1] - vertices[v]);
-      w.surface.push_back(row.surface);
+    for (int k = 0; k < row.panels; ++k) {
+      w.bound[row.panel + k] = w.vertices[row.vertex + k + 1] - w.vertices[row.vertex + k];
+      w.surface[row.panel + k] = row.surface;
     }
+  for (Points* points : {&w.vertices, &w.trailing, &w.control, &w.middle})
+    for (Point& p : *points) p.x /= w.B;
   return w;
 }
 

@@ -65,12 +65,12 @@ class Systems {
     Field normal{};
     for (int i = 0; i < tile.count; ++i) normal.set(i, wind.normal[begin + i]);
     alignas(64) double through[kTile];
-    induce(lattice_, wind, tile, [&](int first, int n, const Field* block) {
-      for (int k = 0; k < n; ++k) {
+    for (Blocks b(lattice_, wind, tile); b.next();)
+      for (int k = 0; k < b.count; ++k) {
         for (int i = 0; i < tile.padded; i += kLanes)
-          dot(block[k].load(i), normal.load(i)).store(through + i);
+          dot(b.velocity[k].load(i), normal.load(i)).store(through + i);
         // Column of a left panel: that of its image.
-        const int panel = first + k, column = panel < solved ? panel : image_[panel - solved];
+        const int panel = b.panel + k, column = panel < solved ? panel : image_[panel - solved];
         double* a = &other_(begin, column);
         if (panel < solved)
           std::copy_n(through, tile.count, a);
@@ -80,7 +80,6 @@ class Systems {
         a = &symmetric_(begin, column);
         for (int i = 0; i < both; ++i) a[i] += through[i];
       }
-    });
   }
 
   static std::vector<int> images(const Lattice& lattice) {

@@ -70,9 +70,9 @@ inline void turn_bounds(const FromVertex& from, const FromVertex& to, int padded
 // At the first `count` points, for the given circulation of all panels.
 inline Turned turned(const Lattice& lattice, const WindLattice& wind, const Points& points,
                      int count, const Values& circulation) {
+  Turned out{Points(count), Points(count)};
   if (std::all_of(circulation.begin(), circulation.end(), [](double g) { return g == 0.0; }))
-    return {Points(count), Points(count)};
-  Turned out;
+    return out;
   // Circulation of the legs, positive downstream. Behind the trailing edge the legs of a strip's
   // panels are one.
   Values leg(wind.vertices.size()), wake(wind.trailing.size()), surface_of(wind.trailing.size());
@@ -103,8 +103,8 @@ inline Turned turned(const Lattice& lattice, const WindLattice& wind, const Poin
           std::swap(a, b);
         }
     for (int i = 0; i < tile.count; ++i) {
-      out.up.push_back(sum.up.get(i));
-      out.aside.push_back(sum.aside.get(i));
+      out.up[begin + i] = sum.up.get(i);
+      out.aside[begin + i] = sum.aside.get(i);
     }
   }
   return out;
