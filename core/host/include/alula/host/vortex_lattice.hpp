@@ -109,17 +109,16 @@ struct UnitLoads {
 
   PanelLoads in(const Points& at_bound, const Points& at_leg) const {
     PanelLoads out(at_bound.size());
-    for (const Row& row : lattice.rows) {
-      if (row.panel >= lattice.solved()) break;
+    for (const Row& row : lattice.rows)
       for (int k = 0; k < row.panels; ++k) {
         const int i = row.panel + k, v = row.vertex + k;
+        if (i == lattice.solved()) return out;
         const Point bound = cross(at_bound[i], wind.bound[i]);
         const Point first = cross(at_leg[v], leg[v]), last = cross(at_leg[v + 1], leg[v + 1]);
         out[i].force = bound + last - first;
         out[i].moment =
             cross(wind.arm[i], bound) + cross(leg_arm[v + 1], last) - cross(leg_arm[v], first);
       }
-    }
     return out;
   }
 };
