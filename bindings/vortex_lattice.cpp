@@ -1,6 +1,7 @@
 // The vortex lattice, and its factorization alone for benchmarks.
 #include <alula/host/vortex_lattice.hpp>
 #include <ctime>
+#include <random>
 
 #include "arrays.hpp"
 #include "bind.hpp"
@@ -11,9 +12,15 @@ using namespace alula::lattice;
 using Result = nb::typed<nb::dict, nb::str, nb::any>;
 using Integers = nb::ndarray<const std::int32_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
+Points points(const double* from, std::size_t count) {
+  Points out;
+  for (std::size_t i = 0; i < count; ++i, from += 3) out.push_back({from[0], from[1], from[2]});
+  return out;
+}
+
 Points points(Matrix from, std::size_t rows, const char* what) {
   if (from.shape(0) != rows || from.shape(1) != 3) throw nb::value_error(what);
-  return Eigen::Map<const Points>(from.data(), 3, static_cast<Eigen::Index>(rows));
+  return points(from.data(), rows);
 }
 
 std::vector<int> integers(Integers from, std::size_t size, int below, const char* what) {
@@ -24,11 +31,20 @@ std::vector<int> integers(Integers from, std::size_t size, int below, const char
   return out;
 }
 
-// Row-major copies of what Eigen holds by columns.
-template <class M>
-auto transposed(const M& m) {
-  Array<double> out({static_cast<int>(m.cols()), static_cast<int>(m.rows())});
-  Eigen::Map<MatrixXd>(out.data(), m.rows(), m.cols()) = m;
+// (columns, rows) of what is held by columns.
+template <class Columns>
+auto array(const Columns& columns) {
+  const std::size_t n = columns.empty() ? 0 : columns.front().size();
+  Array<double> out({static_cast<int>(columns.size()), static_cast<int>(n)});
+  double* to = out.data();
+  for (const auto& column : columns) to = std::copy(column.begin(), column.end(), to);
+  return out.numpy();
+}
+
+auto array(const Points& points) {
+  Array<double> out({static_cast<int>(points.size()), 3});
+  double* to = out.data();
+  for (const Point& p : points) *to++ = p.x, *to++ = p.y, *to++ = p.z;
   return out.numpy();
 }
 
@@ -46,19 +62,20 @@ Result vortex_lattice(Matrix vertices, Integers row_start, Integers row_surface,
     throw nb::value_error("right, center: 2 right + center must be the panels");
   const std::size_t rows = row_surface.shape(0);
   a.vertices = points(vertices, n + rows, "vertices: expected (panels + rows, 3)");
-  a.row_start = integers(row_start, rows + 1, static_cast<int>(n + rows) + 1, "row_start");
+  const auto start = integers(row_start, rows + 1, static_cast<int>(n + rows) + 1, "row_start");
   for (std::size_t r = 0; r < rows; ++r)
-    if (a.row_start[r] + 2 > a.row_start[r + 1]) throw nb::value_error("row_start: an empty row");
-  if (a.row_start[0] != 0 || a.row_start[rows] != static_cast<int>(n + rows))
+    if (start[r] + 2 > start[r + 1]) throw nb::value_error("row_start: an empty row");
+  if (start[0] != 0 || start[rows] != static_cast<int>(n + rows))
     throw nb::value_error("row_start: the rows must hold all vertices");
-  a.row_surface = integers(row_surface, rows, static_cast<int>(rows), "row_surface");
+  const auto of = integers(row_surface, rows, static_cast<int>(rows), "row_surface");
+  const int edges = static_cast<int>(trailing.shape(0));
   a.trailing = points(trailing, trailing.shape(0), "trailing: expected (edges, 3)");
-  a.row_trailing =
-      integers(row_trailing, rows, static_cast<int>(trailing.shape(0)), "row_trailing");
-  for (std::size_t r = 0; r < rows; ++r)
-    if (a.row_trailing[r] + a.row_start[r + 1] - a.row_start[r] >
-        static_cast<int>(trailing.shape(0)))
+  const auto edge = integers(row_trailing, rows, edges, "row_trailing");
+  for (int r = 0; r < static_cast<int>(rows); ++r) {
+    a.rows.push_back({start[r + 1] - start[r] - 1, start[r] - r, start[r], edge[r], of[r]});
+    if (edge[r] + start[r + 1] - start[r] > edges)
       throw nb::value_error("row_trailing: a row beyond the last edge");
+  }
   a.control = points(control, n, "control: expected (panels, 3)");
   a.middle = points(middle, n, "middle: expected (panels, 3)");
   a.normal = points(normal, n, "normal: expected (panels, 3)");
@@ -66,8 +83,7 @@ Result vortex_lattice(Matrix vertices, Integers row_start, Integers row_surface,
       parity.shape(0) != normal_rate.shape(0))
     throw nb::value_error("normal_rate, parity: expected (controls, panels, 3) and (controls,)");
   for (std::size_t k = 0; k < normal_rate.shape(0); ++k) {
-    a.normal_rate.push_back(
-        Eigen::Map<const Points>(normal_rate.data() + 3 * n * k, 3, static_cast<Eigen::Index>(n)));
+    a.normal_rate.push_back(points(normal_rate.data() + 3 * n * k, n));
     a.parity.push_back(parity(k) < 0.0 ? -1 : 1);
   }
   a.right = right, a.center = center;
@@ -79,15 +95,11 @@ Result vortex_lattice(Matrix vertices, Integers row_start, Integers row_surface,
   a.strip_last = points(strip_last, strips, "strip_last: expected (strips, 3)");
   a.strip_middle = points(strip_middle, strips, "strip_middle: expected (strips, 3)");
   Condition at;
-  const auto three = [](Vector v, const char* what) {
-    const auto x = vec3(v, what);
-    return Vector3d(x.x, x.y, x.z);
-  };
-  const Vector3d sizes = three(reference, "reference: expected S, b, c");
+  const Point sizes = vec3(reference, "reference: expected S, b, c");
   at.alpha = alpha, at.beta = beta, at.mach = mach, at.core = core, at.turning = turning;
-  at.rate = three(rate, "rate: expected phat, qhat, rhat");
-  at.point = three(point, "point: expected 3 numbers");
-  at.S = sizes[0], at.b = sizes[1], at.c = sizes[2];
+  at.rate = vec3(rate, "rate: expected phat, qhat, rhat");
+  at.point = vec3(point, "point: expected 3 numbers");
+  at.S = sizes.x, at.b = sizes.y, at.c = sizes.z;
   if (!(mach >= 0.0 && mach < 1.0)) throw nb::value_error("mach: expected 0 to below 1");
   Loads loads;
   {
@@ -95,14 +107,14 @@ Result vortex_lattice(Matrix vertices, Integers row_start, Integers row_surface,
     loads = solve(a, at);
   }
   Result out;
-  out["circulation"] = transposed(loads.circulation.transpose().eval());
-  out["circulation_rates"] = transposed(loads.circulation_rates);
-  out["force"] = transposed(loads.force);
-  out["coefficients"] = transposed(loads.coefficients);
-  out["derivatives"] = transposed(loads.derivatives);
-  out["strip_circulation"] = transposed(loads.wake.circulation);
-  out["strip_wash"] = transposed(loads.wake.wash);
-  out["wake_drag"] = transposed(loads.wake.drag);
+  out["circulation"] = array(Columns{loads.circulation});
+  out["circulation_rates"] = array(loads.circulation_rates);
+  out["force"] = array(loads.force);
+  out["coefficients"] = array(std::vector{loads.coefficients});
+  out["derivatives"] = array(loads.derivatives);
+  out["strip_circulation"] = array(loads.wake.circulation);
+  out["strip_wash"] = array(loads.wake.wash);
+  out["wake_drag"] = array(loads.wake.drag);
   return out;
 }
 
@@ -110,10 +122,12 @@ Result vortex_lattice(Matrix vertices, Integers row_start, Integers row_surface,
 double factor_time(int n) {
   if (n < 1 || n > kMaxPanels) throw nb::value_error("n: expected 1 to LATTICE_PANELS");
   nb::gil_scoped_release release;
-  MatrixXd A = MatrixXd::Random(n, n);
-  A.diagonal().array() += static_cast<double>(n);
+  std::minstd_rand random;
+  Eigen::MatrixXd A(n, n);
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) A(i, j) = 1e-9 * random() + (i == j ? n : 0);
   const std::clock_t begin = std::clock();
-  const Eigen::PartialPivLU<Eigen::Ref<MatrixXd>> lu(A);
+  const Factorized lu(A);
   const std::clock_t end = std::clock();
   return static_cast<double>(end - begin) / CLOCKS_PER_SEC;
 }

@@ -8,6 +8,9 @@ import numpy as np
 
 from alula.base.arrays import Array
 
+# Corners in order. A few at a time: plain numbers are several times as quick as arrays.
+Polygon = list[tuple[float, float]]
+
 _SHARE = 1e-6  # of the smaller area: less is a common edge in rounded numbers
 _PARALLEL = 0.02  # sine of the angle between planes: 1.1 deg
 
@@ -31,13 +34,14 @@ def overlap(one: Array, other: Array, near: float) -> bool:
         return False
     e1 = first / np.linalg.norm(first)
     e2 = _cross(normal, e1)
-    flat = np.column_stack([(one - one[0]) @ e1, (one - one[0]) @ e2])
-    flat_b = np.column_stack([(other - one[0]) @ e1, (other - one[0]) @ e2])
-    shared = _clip(_turned(flat_b), _turned(flat))
+    flat = _turned([(float(p @ e1), float(p @ e2)) for p in one - one[0]])
+    flat_b = _turned([(float(p @ e1), float(p @ e2)) for p in other - one[0]])
+    shared = _clip(flat_b, flat)
     if abs(_area(shared)) <= _SHARE * min(size, size_b):
         return False
     # How far apart the planes are where the two lie over each other.
-    middle = one[0] + e1 * shared[:, 0].mean() + e2 * shared[:, 1].mean()
+    x, y = (sum(p[k] for p in shared) / len(shared) for k in (0, 1))
+    middle = one[0] + e1 * x + e2 * y
     return bool(abs((middle - other.mean(axis=0)) @ normal_b) <= near)
 
 
@@ -54,34 +58,32 @@ def _cross(a: Array, b: Array) -> Array:
     return np.array([v * z - w * y, w * x - u * z, u * y - v * x])
 
 
-def _area(polygon: Array) -> float:
-    if len(polygon) < 3:
-        return 0.0
-    x, y = polygon.T
-    return float(0.5 * np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))
+def _area(polygon: Polygon) -> float:
+    return 0.5 * sum(x * v - y * u for (x, y), (u, v) in zip(polygon, _next(polygon), strict=True))
 
 
-def _turned(polygon: Array) -> Array:
+def _next(polygon: Polygon) -> Polygon:
+    """The corner after each."""
+    return polygon[1:] + polygon[:1]
+
+
+def _turned(polygon: Polygon) -> Polygon:
     return polygon if _area(polygon) > 0.0 else polygon[::-1]
 
 
-def _clip(subject: Array, window: Array) -> Array:
+def _clip(subject: Polygon, window: Polygon) -> Polygon:
     """What of a convex polygon lies in another, both counterclockwise.
 
     Sutherland and Hodgman 1974, Communications of the ACM 17(1).
     """
-    for a, b in zip(window, np.roll(window, -1, axis=0), strict=True):
-        if len(subject) == 0:
-            break
-        d = b - a
-        inside = d[0] * (subject[:, 1] - a[1]) - d[1] * (subject[:, 0] - a[0])
-        kept = []
-        for p, q, s, t in zip(
-            subject, np.roll(subject, -1, axis=0), inside, np.roll(inside, -1), strict=True
-        ):
+    for (ax, ay), (bx, by) in zip(window, _next(window), strict=True):
+        kept: Polygon = []
+        for (px, py), (qx, qy) in zip(subject, _next(subject), strict=True):
+            s = (bx - ax) * (py - ay) - (by - ay) * (px - ax)
+            t = (bx - ax) * (qy - ay) - (by - ay) * (qx - ax)
             if s >= 0.0:
-                kept.append(p)
+                kept.append((px, py))
             if s * t < 0.0:
-                kept.append(p + (q - p) * s / (s - t))
-        subject = np.array(kept).reshape(-1, 2)
+                kept.append((px + (qx - px) * s / (s - t), py + (qy - py) * s / (s - t)))
+        subject = kept
     return subject

@@ -163,7 +163,7 @@ def _result(
         neutral_point=frozen(neutral),
         symmetric=lattice.right > 0,
         panels=lattice,
-        circulation=frozen(found["circulation"][:, 0]),
+        circulation=frozen(found["circulation"][0]),
         circulation_rates=frozen(found["circulation_rates"]),
         force=frozen(found["force"]),
         span_loads=_span_loads(lattice, found),
@@ -219,9 +219,9 @@ def _finer(
 
 
 def _drags(result: LatticeResult) -> list[Message]:
-    near, far = result.coefficients("model")["CD"], result.induced_drag
-    CL = result.coefficients("model")["CL"]
-    if abs(CL) < _LIFTING or abs(near - far) <= _DRAGS_APART * abs(far):
+    model = result.coefficients("model")
+    near, far = model["CD"], result.induced_drag
+    if abs(model["CL"]) < _LIFTING or abs(near - far) <= _DRAGS_APART * abs(far):
         return []
     return [
         warn(

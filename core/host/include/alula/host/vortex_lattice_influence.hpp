@@ -7,6 +7,7 @@
 // the trailing edge is shared by all panels of a strip.
 #include <algorithm>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "alula/host/vortex_lattice_panels.hpp"
@@ -18,18 +19,36 @@ inline constexpr int kTile = 64;   // points at a time
 inline constexpr int kBlock = 32;  // panels at a time
 
 using Pack = Lanes<double, kLanes>;
+using Pack3 = Vec3<Pack>;
+
+inline Pack3 packed(const Point& p) { return {Pack(p.x), Pack(p.y), Pack(p.z)}; }
+
+// A vector at each point of a tile.
+struct Field {
+  alignas(64) double x[kTile], y[kTile], z[kTile];
+
+  Pack3 load(int i) const { return {Pack::load(x + i), Pack::load(y + i), Pack::load(z + i)}; }
+  void store(int i, const Pack3& v) { v.x.store(x + i), v.y.store(y + i), v.z.store(z + i); }
+  void add(int i, const Pack3& v) { store(i, load(i) + v); }
+  Point get(int i) const { return {x[i], y[i], z[i]}; }
+  void set(int i, const Point& p) { x[i] = p.x, y[i] = p.y, z[i] = p.z; }
+};
 
 // Points in wind axes, x scaled; the last one repeated to fill whole registers.
 struct Tile {
   int first = 0, count = 0, padded = 0;
-  alignas(64) double x[kTile], y[kTile], z[kTile], surface[kTile];
+  Field point;
+  alignas(64) double surface[kTile];
 
-  Tile(const Points& points, const std::vector<double>& of, int begin, int end)
-      : first(begin), count(end - begin), padded((count + kLanes - 1) / kLanes * kLanes) {
+  // Those from `begin` on, of `end` in all.
+  Tile(const Points& points, const Values& of, int begin, int end)
+      : first(begin),
+        count(std::min(kTile, end - begin)),
+        padded((count + kLanes - 1) / kLanes * kLanes) {
     for (int i = 0; i < padded; ++i) {
       const int k = begin + std::min(i, count - 1);
-      x[i] = points(0, k), y[i] = points(1, k), z[i] = points(2, k);
-      surface[i] = of[static_cast<std::size_t>(k)];
+      point.set(i, points[k]);
+      surface[i] = of[k];
     }
   }
 };
@@ -37,7 +56,8 @@ struct Tile {
 // The points seen from a place of the lattice, and what the leg from there on induces (times 4 pi,
 // scaled axes).
 struct FromVertex {
-  alignas(64) double x[kTile], y[kTile], z[kTile], r[kTile], fx[kTile], fy[kTile], fz[kTile];
+  Field arm, leg;
+  alignas(64) double r[kTile];
 };
 
 // Leg from the origin along +x. D = y^2 + z^2 + core^2, r^2 = x^2 + D;
@@ -68,106 +88,118 @@ inline Pack bound_factor(Pack p, Pack dot, Pack sum) {
 }
 
 // From the trailing edge: a leg along the stream, (0, -z, y) g.
-inline void see_edge(const Tile& tile, const Eigen::Ref<const Vector3d>& edge, double surface,
-                     double core2, FromVertex& out) {
+inline void see_edge(const Tile& tile, const Point& edge, double surface, double core2,
+                     FromVertex& out) {
   for (int i = 0; i < tile.padded; i += kLanes) {
-    const Pack x = Pack::load(tile.x + i) - Pack(edge[0]);
-    const Pack y = Pack::load(tile.y + i) - Pack(edge[1]);
-    const Pack z = Pack::load(tile.z + i) - Pack(edge[2]);
-    const Leg leg(x, y * y + z * z + core_of(tile, i, surface, core2));
-    x.store(out.x + i), y.store(out.y + i), z.store(out.z + i), leg.r.store(out.r + i);
-    Pack(0.0).store(out.fx + i), (-(z * leg.g)).store(out.fy + i), (y * leg.g).store(out.fz + i);
+    const Pack3 a = tile.point.load(i) - packed(edge);
+    const Leg leg(a.x, a.y * a.y + a.z * a.z + core_of(tile, i, surface, core2));
+    out.arm.store(i, a), leg.r.store(out.r + i);
+    out.leg.store(i, {Pack(0.0), -(a.z * leg.g), a.y * leg.g});
   }
 }
 
 // From a bound vortex' end: along the surface to the trailing edge, then on.
-inline void see(const Tile& tile, const Eigen::Ref<const Vector3d>& vertex, const FromVertex& edge,
-                double surface, double core2, FromVertex& out) {
+inline void see(const Tile& tile, const Point& vertex, const FromVertex& edge, double surface,
+                double core2, FromVertex& out) {
   for (int i = 0; i < tile.padded; i += kLanes) {
-    const Pack x = Pack::load(tile.x + i) - Pack(vertex[0]);
-    const Pack y = Pack::load(tile.y + i) - Pack(vertex[1]);
-    const Pack z = Pack::load(tile.z + i) - Pack(vertex[2]);
-    const Pack r = sqrt(x * x + y * y + z * z + core_of(tile, i, surface, core2));
-    const Pack ex = Pack::load(edge.x + i), ey = Pack::load(edge.y + i),
-               ez = Pack::load(edge.z + i), er = Pack::load(edge.r + i);
-    const Pack h = bound_factor(r * er, x * ex + y * ey + z * ez, r + er);
-    x.store(out.x + i), y.store(out.y + i), z.store(out.z + i), r.store(out.r + i);
-    (h * (y * ez - z * ey)).store(out.fx + i);
-    (Pack::load(edge.fy + i) + h * (z * ex - x * ez)).store(out.fy + i);
-    (Pack::load(edge.fz + i) + h * (x * ey - y * ex)).store(out.fz + i);
+    const Pack3 a = tile.point.load(i) - packed(vertex), e = edge.arm.load(i);
+    const Pack r = sqrt(dot(a, a) + core_of(tile, i, surface, core2)), re = Pack::load(edge.r + i);
+    const Pack h = bound_factor(r * re, dot(a, e), r + re);
+    out.arm.store(i, a), r.store(out.r + i);
+    out.leg.store(i, edge.leg.load(i) + h * cross(a, e));
   }
 }
 
-// Bound vortex from a to b with its two legs; v: x, y, z, each `stride` apart.
-inline void horseshoes(const FromVertex& a, const FromVertex& b, int padded, double B, double* v,
-                       int stride) {
+// Bound vortex from a to b with its two legs.
+inline void horseshoes(const FromVertex& from, const FromVertex& to, int padded, double B,
+                       Field& out) {
   const Pack scale(0.25 * std::numbers::inv_pi), scale_x(0.25 * std::numbers::inv_pi / B);
   for (int i = 0; i < padded; i += kLanes) {
-    const Pack ax = Pack::load(a.x + i), ay = Pack::load(a.y + i), az = Pack::load(a.z + i);
-    const Pack bx = Pack::load(b.x + i), by = Pack::load(b.y + i), bz = Pack::load(b.z + i);
-    const Pack ra = Pack::load(a.r + i), rb = Pack::load(b.r + i);
-    const Pack h = bound_factor(ra * rb, ax * bx + ay * by + az * bz, ra + rb);
-    const Pack fy = Pack::load(b.fy + i) - Pack::load(a.fy + i);
-    const Pack fz = Pack::load(b.fz + i) - Pack::load(a.fz + i);
-    const Pack fx = Pack::load(b.fx + i) - Pack::load(a.fx + i);
-    (scale_x * (h * (ay * bz - az * by) + fx)).store(v + i);
-    (scale * (h * (az * bx - ax * bz) + fy)).store(v + stride + i);
-    (scale * (h * (ax * by - ay * bx) + fz)).store(v + 2 * stride + i);
+    const Pack3 a = from.arm.load(i), b = to.arm.load(i);
+    const Pack ra = Pack::load(from.r + i), rb = Pack::load(to.r + i);
+    const Pack h = bound_factor(ra * rb, dot(a, b), ra + rb);
+    const Pack3 v = h * cross(a, b) + (to.leg.load(i) - from.leg.load(i));
+    out.store(i, {scale_x * v.x, scale * v.y, scale * v.z});
   }
 }
 
-// Velocities of `count` panels from `first` on at a tile of points: column per panel, x in the rows
-// 0 ..., y from kTile, z from 2 kTile on.
-using Block = Eigen::Matrix<double, 3 * kTile, Eigen::Dynamic>;
+// The horseshoes' velocities at a tile, block after block along the rows:
+// for (Blocks b(lattice, wind, tile); b.next();) use(b.panel, b.count, b.velocity);
+class Blocks {
+ public:
+  int panel = 0, count = 0;  // the block's first panel, and how many it has
+  std::vector<Field> velocity = std::vector<Field>(kBlock);
 
-// Calls use(first panel, count, block) until all horseshoes were had.
-template <class Use>
-void induce(const Lattice& lattice, const WindLattice& wind, const Tile& tile, Use&& use) {
-  FromVertex one, other;
-  FromVertex *a = &one, *b = &other;
-  Block block(3 * kTile, kBlock);
-  std::vector<FromVertex> edges;  // of the rows of one side of a surface
-  int edges_from = -1;
-  for (int row = 0; row < lattice.rows(); ++row) {
-    const std::size_t r = static_cast<std::size_t>(row);
-    const double surface = lattice.row_surface[r];
-    const int begin = lattice.row_start[r], end = lattice.row_start[r + 1];
-    if (edges_from != lattice.row_trailing[r]) {
-      edges_from = lattice.row_trailing[r];
-      edges.resize(static_cast<std::size_t>(end - begin));
-      for (int k = 0; k < end - begin; ++k)
-        see_edge(tile, wind.trailing.col(edges_from + k), surface, wind.core2,
-                 edges[static_cast<std::size_t>(k)]);
+  Blocks(const Lattice& lattice, const WindLattice& wind, const Tile& tile)
+      : lattice_(lattice), wind_(wind), tile_(tile) {}
+
+  bool next() {
+    panel += count;
+    if (panel == lattice_.panels()) return false;
+    const Row* row = &lattice_.rows[row_];
+    if (panel == row->panel + row->panels) row = &lattice_.rows[++row_];
+    const double surface = row->surface, core2 = wind_.core2;
+    const int done = panel - row->panel;
+    if (edges_from_ != row->trailing) {
+      edges_from_ = row->trailing;
+      edges_.resize(row->panels + 1);
+      for (int k = 0; k <= row->panels; ++k)
+        see_edge(tile_, wind_.trailing[edges_from_ + k], surface, core2, edges_[k]);
     }
-    see(tile, wind.vertices.col(begin), edges[0], surface, wind.core2, *a);
-    for (int v = begin + 1; v < end;) {
-      const int first = v - 1 - row, count = std::min(kBlock, end - v);
-      for (int k = 0; k < count; ++k, ++v) {
-        see(tile, wind.vertices.col(v), edges[static_cast<std::size_t>(v - begin)], surface,
-            wind.core2, *b);
-        horseshoes(*a, *b, tile.padded, wind.B, block.col(k).data(), kTile);
-        std::swap(a, b);
+    const Point* vertex = &wind_.vertices[row->vertex];
+    if (done == 0) see(tile_, vertex[0], edges_[0], surface, core2, last_[panel % 2]);
+    count = std::min(kBlock, row->panels - done);
+    for (int k = 0; k < count; ++k) {
+      FromVertex &a = last_[(panel + k) % 2], &b = last_[(panel + k + 1) % 2];
+      see(tile_, vertex[done + k + 1], edges_[done + k + 1], surface, core2, b);
+      horseshoes(a, b, tile_.padded, wind_.B, velocity[k]);
+    }
+    return true;
+  }
+
+ private:
+  const Lattice& lattice_;
+  const WindLattice& wind_;
+  const Tile& tile_;
+  FromVertex last_[2];             // by turns
+  std::vector<FromVertex> edges_;  // of the rows of one side of a surface
+  int row_ = 0, edges_from_ = -1;
+};
+
+// Adds the panels' velocities times their circulation, eight registers of one component at a time.
+inline void add_up(const Field* block, int count, int padded, const double* circulation,
+                   Field& sum) {
+  constexpr int kAtOnce = 8 * kLanes;
+  static_assert(kTile % kAtOnce == 0);
+  for (const auto component : {&Field::x, &Field::y, &Field::z})
+    for (int i = 0; i < padded; i += kAtOnce) {
+      double* to = sum.*component + i;
+      Pack s[8];
+#pragma GCC unroll 8
+      for (int j = 0; j < 8; ++j) s[j] = Pack::load(to + j * kLanes);
+      for (int k = 0; k < count; ++k) {
+        const double* from = block[k].*component + i;
+#pragma GCC unroll 8
+        for (int j = 0; j < 8; ++j) s[j] += Pack(circulation[k]) * Pack::load(from + j * kLanes);
       }
-      use(first, count, block);
+#pragma GCC unroll 8
+      for (int j = 0; j < 8; ++j) s[j].store(to + j * kLanes);
     }
-  }
 }
 
-// Velocities at the first `count` points that the circulations (panels, k) induce: (3 k, count),
-// x of all columns first, then y, z.
-inline MatrixXd induced(const Lattice& lattice, const WindLattice& wind, const Points& points,
-                        int count, const MatrixXd& circulation) {
-  const Eigen::Index k = circulation.cols();
-  MatrixXd out(3 * k, count);
-  Eigen::Matrix<double, 3 * kTile, Eigen::Dynamic> sum(3 * kTile, k);
-  for (int i = 0; i < count; i += kTile) {
-    const Tile tile(points, wind.surface, i, std::min(i + kTile, count));
-    sum.setZero();
-    induce(lattice, wind, tile, [&](int first, int n, const Block& block) {
-      sum.noalias() += block.leftCols(n) * circulation.middleRows(first, n);
-    });
-    for (int axis = 0; axis < 3; ++axis)
-      out.block(axis * k, i, k, tile.count) = sum.middleRows(axis * kTile, tile.count).transpose();
+// Velocities at the first `count` points that the circulations of all panels induce, by column.
+inline std::vector<Points> induced(const Lattice& lattice, const WindLattice& wind,
+                                   const Points& points, int count, const Columns& circulation) {
+  const std::size_t columns = circulation.size();
+  std::vector<Points> out(columns, Points(count));
+  for (int begin = 0; begin < count; begin += kTile) {
+    const Tile tile(points, wind.surface, begin, count);
+    std::vector<Field> sum(columns);
+    for (Blocks b(lattice, wind, tile); b.next();)
+      for (std::size_t c = 0; c < columns; ++c)
+        add_up(b.velocity.data(), b.count, tile.padded, &circulation[c][b.panel], sum[c]);
+    for (std::size_t c = 0; c < columns; ++c)
+      for (int i = 0; i < tile.count; ++i) out[c][begin + i] = sum[c].get(i);
   }
   return out;
 }

@@ -3,49 +3,52 @@
 //
 // Katz and Plotkin, Low-Speed Aerodynamics, 2nd ed. (2001), Sec. 8.2.2: D = -rho/2 times the
 // integral of circulation times normal wash over the trace of the wake.
+#include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "alula/host/vortex_lattice_panels.hpp"
 
 namespace alula::lattice {
 
 struct Trefftz {
-  MatrixXd circulation;  // (strips, k)
-  MatrixXd wash;         // (strips, k), normal to the trace, far behind: twice that at the wing
-  MatrixXd drag;         // (k, k): CD of column i's circulation in column j's wash
+  Columns circulation;  // (strips, k)
+  Columns wash;         // (strips, k), normal to the trace, far behind: twice that at the wing
+  Columns drag;         // (k, k): CD of column i's circulation in column j's wash
 };
 
 // circulation: (panels, k). Each strip's wake leaves at its trailing edge, along the stream.
 inline Trefftz trefftz(const Lattice& lattice, const Condition& at, const WindLattice& wind,
-                       const MatrixXd& circulation) {
-  const Eigen::Index strips = lattice.strip_first.cols(), k = circulation.cols();
-  Trefftz out;
-  out.circulation = MatrixXd::Zero(strips, k);
-  for (int i = 0; i < lattice.panels(); ++i)
-    out.circulation.row(lattice.strip[static_cast<std::size_t>(i)]) += circulation.row(i);
-  const auto trace = [&](const Points& p) -> Points {
-    return wind.to_wind * (p.colwise() - at.point);
-  };
-  const Points first = trace(lattice.strip_first), last = trace(lattice.strip_last),
-               middle = trace(lattice.strip_middle);
-  MatrixXd through(strips, strips);  // normal wash times width, of unit circulations
-  for (Eigen::Index i = 0; i < strips; ++i) {
-    const double y = middle(1, i), z = middle(2, i);
-    const double dy = last(1, i) - first(1, i), dz = last(2, i) - first(2, i);
+                       const Columns& circulation) {
+  const std::size_t strips = lattice.strip_first.size(), k = circulation.size();
+  const Columns zeros(k, Values(strips));
+  Trefftz out{zeros, zeros, Columns(k, Values(k))};
+  for (std::size_t c = 0; c < k; ++c)
+    for (int i = 0; i < lattice.panels(); ++i)
+      out.circulation[c][lattice.strip[i]] += circulation[c][i];
+  const Points first = rotated(wind.to_wind, lattice.strip_first, at.point),
+               last = rotated(wind.to_wind, lattice.strip_last, at.point),
+               middle = rotated(wind.to_wind, lattice.strip_middle, at.point);
+  for (std::size_t i = 0; i < strips; ++i) {
+    const double dy = last[i].y - first[i].y, dz = last[i].z - first[i].z;
     const double close = 1e-12 * (dy * dy + dz * dz);
-    for (Eigen::Index j = 0; j < strips; ++j) {
-      double sum = 0.0;
-      for (const auto& [edges, sign] : {std::pair{&first, -1.0}, std::pair{&last, 1.0}}) {
-        const double ry = y - (*edges)(1, j), rz = z - (*edges)(2, j), r2 = ry * ry + rz * rz;
-        if (r2 > close) sum += sign * (rz * dz + ry * dy) / r2;
+    for (std::size_t j = 0; j < strips; ++j) {
+      double through = 0.0;  // normal wash times width, of unit circulation
+      for (const auto& [edge, sign] : {std::pair{first[j], -1.0}, std::pair{last[j], 1.0}}) {
+        const double ry = middle[i].y - edge.y, rz = middle[i].z - edge.z;
+        const double r2 = ry * ry + rz * rz;
+        if (r2 > close) through += sign * (rz * dz + ry * dy) / r2;
       }
-      through(i, j) = 0.5 * std::numbers::inv_pi * sum;
+      through *= 0.5 * std::numbers::inv_pi;
+      for (std::size_t c = 0; c < k; ++c) out.wash[c][i] += through * out.circulation[c][j];
+    }
+    const double width = std::hypot(dy, dz);
+    for (std::size_t c = 0; c < k; ++c) {
+      for (std::size_t b = 0; b < k; ++b)
+        out.drag[c][b] -= out.circulation[b][i] * out.wash[c][i] / at.S;
+      out.wash[c][i] /= width;
     }
   }
-  out.wash.noalias() = through * out.circulation;
-  out.drag.noalias() = -1.0 / at.S * out.circulation.transpose() * out.wash;
-  for (Eigen::Index i = 0; i < strips; ++i)
-    out.wash.row(i) /= std::hypot(last(1, i) - first(1, i), last(2, i) - first(2, i));
   return out;
 }
 

@@ -8,58 +8,35 @@
 
 namespace alula::lattice {
 
-// By the stream's turning towards up (wind z), and away from y (towards -y): (3, points) each.
+// By the stream's turning towards up (wind z), and away from y (towards -y): one per point each.
 struct Turned {
   Points up, aside;
 };
 
-// Circulation of the leg from a row's vertex, positive downstream.
-inline double leg_circulation(const Lattice& lattice, const VectorXd& circulation, int row, int v) {
-  const std::size_t r = static_cast<std::size_t>(row);
-  const double before = v > lattice.row_start[r] ? circulation[v - 1 - row] : 0.0;
-  return before - (v + 1 < lattice.row_start[r + 1] ? circulation[v - row] : 0.0);
-}
-
 namespace detail {
 
 struct Turning {
-  alignas(64) double up[3][kTile], aside[3][kTile];
+  Field up, aside;
 };
-
-inline void add(double* to, Pack x) { (Pack::load(to) + x).store(to); }
 
 // Leg with circulation s: f = g (0, -z, y), q = 1/(B r^3) + x (2 - x/r) g^2 in which the first x is
 // not scaled; see the header of this file, with w = -e_y and w = -e_z.
-inline void turn_legs(const Tile& tile, const Eigen::Ref<const Vector3d>& vertex, double surface,
-                      double core2, double B, double circulation, Turning& out) {
+inline void turn_legs(const Tile& tile, const Point& vertex, double surface, double core2, double B,
+                      double circulation, Turning& out) {
   const Pack s(0.25 * std::numbers::inv_pi * circulation);
   for (int i = 0; i < tile.padded; i += kLanes) {
-    const Pack x = Pack::load(tile.x + i) - Pack(vertex[0]);
-    const Pack y = Pack::load(tile.y + i) - Pack(vertex[1]);
-    const Pack z = Pack::load(tile.z + i) - Pack(vertex[2]);
+    const auto [x, y, z] = tile.point.load(i) - packed(vertex);
     const Leg leg(x, y * y + z * z + core_of(tile, i, surface, core2));
     const Pack X = x * Pack(B), g = leg.g, u = leg.inverse_r;
     const Pack q = u * u * u * Pack(1.0 / B) + X * (Pack(2.0) - x * u) * g * g;
-    add(out.up[0] + i, -(s * y * g));
-    add(out.up[1] + i, s * (X * g - z * z * q));
-    add(out.up[2] + i, s * y * z * q);
-    add(out.aside[0] + i, -(s * z * g));
-    add(out.aside[1] + i, s * y * z * q);
-    add(out.aside[2] + i, s * (X * g - y * y * q));
+    out.up.add(i, {-(s * y * g), s * (X * g - z * z * q), s * y * z * q});
+    out.aside.add(i, {-(s * z * g), s * y * z * q, s * (X * g - y * y * q)});
   }
 }
 
-struct Three {
-  Pack x, y, z;
-};
-inline Three cross(const Three& a, const Three& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-inline Pack dot(const Three& a, const Three& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-
 // Derivative of the bound vortex' velocity (scaled axes) as a and b change by da and db.
-inline Three turn_bound(const Three& a, const Three& b, Pack ra, Pack rb, const Three& da,
-                        const Three& db) {
+inline Pack3 turn_bound(const Pack3& a, const Pack3& b, Pack ra, Pack rb, const Pack3& da,
+                        const Pack3& db) {
   const Pack p = ra * rb, ab = dot(a, b), zero(0.0);
   const Pack h = bound_factor(p, ab, ra + rb);
   const Pack dra = dot(a, da) / ra, drb = dot(b, db) / rb, dp = dra * rb + ra * drb;
@@ -67,31 +44,24 @@ inline Three turn_bound(const Three& a, const Three& b, Pack ra, Pack rb, const 
   const auto off = h > zero;
   const Pack den = select(off, p * (p + ab), Pack(1.0));
   const Pack dh = select(off, (dra + drb - h * (dp * (p + ab) + p * (dp + dab))) / den, zero);
-  const Three c = cross(a, b), l = cross(da, b), m = cross(a, db);
-  return {(l.x + m.x) * h + c.x * dh, (l.y + m.y) * h + c.y * dh, (l.z + m.z) * h + c.z * dh};
+  return h * (cross(da, b) + cross(a, db)) + dh * cross(a, b);
 }
 
 // With Prandtl-Glauert the bound vortices, too, feel which way the stream goes.
-inline void turn_bounds(const FromVertex& a_of, const FromVertex& b_of, int padded, double B,
+inline void turn_bounds(const FromVertex& from, const FromVertex& to, int padded, double B,
                         double circulation, Turning& out) {
-  const Pack s(0.25 * std::numbers::inv_pi * circulation), k(1.0 / B), K(B);
+  const Pack s(0.25 * std::numbers::inv_pi * circulation), k(1.0 / B), K(B), zero(0.0);
   for (int i = 0; i < padded; i += kLanes) {
-    const Three a{Pack::load(a_of.x + i), Pack::load(a_of.y + i), Pack::load(a_of.z + i)};
-    const Three b{Pack::load(b_of.x + i), Pack::load(b_of.y + i), Pack::load(b_of.z + i)};
-    const Pack ra = Pack::load(a_of.r + i), rb = Pack::load(b_of.r + i), zero(0.0);
-    const Pack h = bound_factor(ra * rb, dot(a, b), ra + rb);
-    Three v = cross(a, b);
-    v = {v.x * h * k, v.y * h, v.z * h};
-    const Three up =
+    const Pack3 a = from.arm.load(i), b = to.arm.load(i);
+    const Pack ra = Pack::load(from.r + i), rb = Pack::load(to.r + i);
+    Pack3 v = bound_factor(ra * rb, dot(a, b), ra + rb) * cross(a, b);
+    v.x *= k;
+    const Pack3 up =
         turn_bound(a, b, ra, rb, {a.z * k, zero, -(a.x * K)}, {b.z * k, zero, -(b.x * K)});
-    add(out.up[0] + i, s * (up.x * k - v.z));
-    add(out.up[1] + i, s * up.y);
-    add(out.up[2] + i, s * (up.z + v.x));
-    const Three aside =
+    out.up.add(i, s * Pack3{up.x * k - v.z, up.y, up.z + v.x});
+    const Pack3 aside =
         turn_bound(a, b, ra, rb, {-(a.y * k), a.x * K, zero}, {-(b.y * k), b.x * K, zero});
-    add(out.aside[0] + i, s * (aside.x * k + v.y));
-    add(out.aside[1] + i, s * (aside.y - v.x));
-    add(out.aside[2] + i, s * aside.z);
+    out.aside.add(i, s * Pack3{aside.x * k + v.y, aside.y - v.x, aside.z});
   }
 }
 
@@ -99,49 +69,43 @@ inline void turn_bounds(const FromVertex& a_of, const FromVertex& b_of, int padd
 
 // At the first `count` points, for the given circulation of all panels.
 inline Turned turned(const Lattice& lattice, const WindLattice& wind, const Points& points,
-                     int count, const VectorXd& circulation) {
-  Turned out{Points::Zero(3, count), Points::Zero(3, count)};
-  if (circulation.isZero(0.0)) return out;
-  // Behind the trailing edge the legs of a strip's panels are one.
-  VectorXd wake = VectorXd::Zero(wind.trailing.cols());
-  std::vector<double> surface_of(static_cast<std::size_t>(wind.trailing.cols()));
-  VectorXd leg(wind.vertices.cols());
-  for (int row = 0; row < lattice.rows(); ++row) {
-    const std::size_t r = static_cast<std::size_t>(row);
-    for (int v = lattice.row_start[r]; v < lattice.row_start[r + 1]; ++v) {
-      const int edge = lattice.row_trailing[r] + v - lattice.row_start[r];
-      leg[v] = leg_circulation(lattice, circulation, row, v);
-      wake[edge] += leg[v];
-      surface_of[static_cast<std::size_t>(edge)] = lattice.row_surface[r];
+                     int count, const Values& circulation) {
+  Turned out{Points(count), Points(count)};
+  if (std::all_of(circulation.begin(), circulation.end(), [](double g) { return g == 0.0; }))
+    return out;
+  // Circulation of the legs, positive downstream. Behind the trailing edge the legs of a strip's
+  // panels are one.
+  Values leg(wind.vertices.size()), wake(wind.trailing.size()), surface_of(wind.trailing.size());
+  for (const Row& row : lattice.rows)
+    for (int k = 0; k <= row.panels; ++k) {
+      double& of = leg[row.vertex + k];
+      if (k > 0) of = circulation[row.panel + k - 1];
+      if (k < row.panels) of -= circulation[row.panel + k];
+      wake[row.trailing + k] += of;
+      surface_of[row.trailing + k] = row.surface;
     }
-  }
   FromVertex one, other, end;
   FromVertex *a = &one, *b = &other;
-  for (int i = 0; i < count; i += kTile) {
-    const Tile tile(points, wind.surface, i, std::min(i + kTile, count));
+  for (int begin = 0; begin < count; begin += kTile) {
+    const Tile tile(points, wind.surface, begin, count);
     detail::Turning sum{};
-    for (int k = 0; k < wake.size(); ++k)
-      detail::turn_legs(tile, wind.trailing.col(k), surface_of[static_cast<std::size_t>(k)],
-                        wind.core2, wind.B, wake[k], sum);
-    for (int row = 0; wind.B != 1.0 && row < lattice.rows(); ++row) {
-      const std::size_t r = static_cast<std::size_t>(row);
-      const double surface = lattice.row_surface[r];
-      const int begin = lattice.row_start[r];
-      for (int v = begin; v < lattice.row_start[r + 1]; ++v) {
-        const int edge = lattice.row_trailing[r] + v - begin;
-        see_edge(tile, wind.trailing.col(edge), surface, wind.core2, end);
-        see(tile, wind.vertices.col(v), end, surface, wind.core2, *b);
-        detail::turn_bounds(*b, end, tile.padded, wind.B, leg[v], sum);
-        if (v > begin)
-          detail::turn_bounds(*a, *b, tile.padded, wind.B, circulation[v - 1 - row], sum);
-        std::swap(a, b);
-      }
+    for (std::size_t k = 0; k < wake.size(); ++k)
+      detail::turn_legs(tile, wind.trailing[k], surface_of[k], wind.core2, wind.B, wake[k], sum);
+    if (wind.B != 1.0)
+      for (const Row& row : lattice.rows)
+        for (int k = 0; k <= row.panels; ++k) {
+          const double surface = row.surface;
+          see_edge(tile, wind.trailing[row.trailing + k], surface, wind.core2, end);
+          see(tile, wind.vertices[row.vertex + k], end, surface, wind.core2, *b);
+          detail::turn_bounds(*b, end, tile.padded, wind.B, leg[row.vertex + k], sum);
+          if (k > 0)
+            detail::turn_bounds(*a, *b, tile.padded, wind.B, circulation[row.panel + k - 1], sum);
+          std::swap(a, b);
+        }
+    for (int i = 0; i < tile.count; ++i) {
+      out.up[begin + i] = sum.up.get(i);
+      out.aside[begin + i] = sum.aside.get(i);
     }
-    for (int axis = 0; axis < 3; ++axis)
-      for (int k = 0; k < tile.count; ++k) {
-        out.up(axis, i + k) = sum.up[axis][k];
-        out.aside(axis, i + k) = sum.aside[axis][k];
-      }
   }
   return out;
 }
