@@ -16,10 +16,6 @@ using alula::Vec3;
 
 constexpr std::size_t kSettings = 17, kColumns = 13;
 
-void check(bool good, const char* what) {
-  if (!good) throw nb::value_error(what);
-}
-
 Vec3<double> row(const Matrix& m, std::size_t i) { return {m(i, 0), m(i, 1), m(i, 2)}; }
 
 bool rows_of_three(const Matrix& m, std::size_t n) { return m.shape(0) == n && m.shape(1) == 3; }
@@ -64,6 +60,22 @@ void write(double* out, const alula::AsseEstimate<double>& e,
   out[10] = beta.observable;
   out[11] = alpha.ever ? alpha.age : nan;
   out[12] = beta.ever ? beta.age : nan;
+}
+
+// Advances `s` over a recording; `found` writes its row where there is an estimate, else it is NaN.
+template <class State, class Found>
+Counts over(State& s, const Recording& r, const MatrixOut& out, Found found) {
+  const auto n = r.t.shape(0);
+  check(out.shape(0) == n && out.shape(1) == kColumns, "out: expected (n, 13)");
+  nb::gil_scoped_release release;
+  for (std::size_t i = 0; i < n; ++i) {
+    double* o = out.data() + kColumns * i;
+    for (std::size_t c = 0; c < kColumns; ++c) o[c] = std::nan("");
+    const bool taken = advance(s, r.input(i));
+    if (!std::isnan(r.V(i))) add_airspeed(s, r.t(i), r.V(i));
+    found(i, taken, o);
+  }
+  return counts(s.rejected);
 }
 
 }  // namespace
@@ -142,23 +154,14 @@ void bind_asse(nb::module_& m) {
         check(capacity >= 3 && capacity <= alula::kMaxAsseSamples,
               "capacity: expected 3 to MAX_ASSE_SAMPLES");
         check(every >= 1, "every: expected 1 or more");
-        check(out.shape(0) == t.shape(0) && out.shape(1) == kColumns, "out: expected (n, 13)");
         alula::AsseWindow<double> window;
         window.settings = settings_of(settings);
         window.capacity = capacity;
-        {
-          nb::gil_scoped_release release;
-          for (std::size_t i = 0; i < t.shape(0); ++i) {
-            double* o = out.data() + kColumns * i;
-            for (std::size_t c = 0; c < kColumns; ++c) o[c] = std::nan("");
-            const bool taken = advance(window, r.input(i));
-            if (!std::isnan(V(i))) add_airspeed(window, t(i), V(i));
-            if (!taken || i % static_cast<std::size_t>(every) != 0) continue;
-            const auto e = solve(window);
-            write(o, e, window.alpha, window.beta);
-          }
-        }
-        return counts(window.rejected);
+        return over(window, r, out, [&](std::size_t i, bool taken, double* o) {
+          if (!taken || i % static_cast<std::size_t>(every) != 0) return;
+          const auto e = solve(window);
+          write(o, e, window.alpha, window.beta);
+        });
       },
       nb::arg("t"), nb::arg("f"), nb::arg("w"), nb::arg("gravity"), nb::arg("wind_rate"),
       nb::arg("V"), nb::arg("settings"), nb::arg("capacity"), nb::arg("every"), nb::arg("out"),
@@ -174,24 +177,15 @@ void bind_asse(nb::module_& m) {
         const Recording r{t, f, w, gravity, wind_rate, V};
         r.check_shapes();
         check(alpha.shape(0) == 0 || alpha.shape(0) == t.shape(0), "alpha: expected (n,) or none");
-        check(out.shape(0) == t.shape(0) && out.shape(1) == kColumns, "out: expected (n, 13)");
         alula::AsseFilter<double> filter;
         filter.settings = settings_of(settings);
         start(filter);
-        {
-          nb::gil_scoped_release release;
-          for (std::size_t i = 0; i < t.shape(0); ++i) {
-            double* o = out.data() + kColumns * i;
-            for (std::size_t c = 0; c < kColumns; ++c) o[c] = std::nan("");
-            const bool taken = advance(filter, r.input(i));
-            if (!std::isnan(V(i))) add_airspeed(filter, t(i), V(i));
-            if (alpha.shape(0) > 0 && filter.running && !std::isnan(alpha(i)))
-              add_alpha(filter, alpha(i), alpha_sigma);
-            if (taken && filter.running)
-              write(o, estimate(filter), filter.reported_alpha, filter.reported_beta);
-          }
-        }
-        return counts(filter.rejected);
+        return over(filter, r, out, [&](std::size_t i, bool taken, double* o) {
+          if (alpha.shape(0) > 0 && filter.running && !std::isnan(alpha(i)))
+            add_alpha(filter, alpha(i), alpha_sigma);
+          if (taken && filter.running)
+            write(o, estimate(filter), filter.reported_alpha, filter.reported_beta);
+        });
       },
       nb::arg("t"), nb::arg("f"), nb::arg("w"), nb::arg("gravity"), nb::arg("wind_rate"),
       nb::arg("V"), nb::arg("settings"), nb::arg("alpha"), nb::arg("alpha_sigma"), nb::arg("out"),

@@ -15,8 +15,12 @@ using MatrixOut = nb::ndarray<double, nb::ndim<2>, nb::c_contig, nb::device::cpu
 using Cube = nb::ndarray<const double, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
 using CubeOut = nb::ndarray<double, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
 
+inline void check(bool good, const char* what) {
+  if (!good) throw nb::value_error(what);
+}
+
 inline alula::Vec3<double> vec3(Vector a, const char* what) {
-  if (a.shape(0) != 3) throw nb::value_error(what);
+  check(a.shape(0) == 3, what);
   return {a(0), a(1), a(2)};
 }
 

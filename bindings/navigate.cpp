@@ -17,10 +17,6 @@ namespace {
 using Result = nb::typed<nb::dict, nb::str, nb::any>;  // arrays and counts by name
 using Vec = Vec3<double>;
 
-void check(bool good, const char* what) {
-  if (!good) throw nb::value_error(what);
-}
-
 // Kinds of measurements, as rows `kind, t of arrival, t measured, z (3), sigma (3)` carry them.
 enum Kind : int { kPos, kVel, kMag, kBaro, kSpeed, kAlpha, kBeta, kKinds };
 constexpr int kColumns = 9;
@@ -71,15 +67,21 @@ Judged<double> take(Pair<double>& f, const PairNoise<double>& noise, const doubl
 
 constexpr int kJointOut = 26, kPairOut = 16;
 
+// What both filters estimate: the first 16 columns.
+void put_motion(double* x, const Quaternion<double>& q, const Vec& velocity, const Vec& position,
+                const Vec& gyro_bias, const Vec& force_bias) {
+  x[0] = q.w;
+  x[1] = q.x;
+  x[2] = q.y;
+  x[3] = q.z;
+  put(x + 4, velocity);
+  put(x + 7, position);
+  put(x + 10, gyro_bias);
+  put(x + 13, force_bias);
+}
+
 void write(const JointFilter<double>& f, double* x, double* P) {
-  x[0] = f.q.w;
-  x[1] = f.q.x;
-  x[2] = f.q.y;
-  x[3] = f.q.z;
-  put(x + 4, f.velocity);
-  put(x + 7, f.position);
-  put(x + 10, f.gyro_bias);
-  put(x + 13, f.force_bias);
+  put_motion(x, f.q, f.velocity, f.position, f.gyro_bias, f.force_bias);
   put(x + 16, f.wind);
   put(x + 19, f.gust);
   x[22] = f.height_bias;
@@ -91,14 +93,7 @@ void write(const JointFilter<double>& f, double* x, double* P) {
 void write(const Pair<double>& f, double* x, double* P) {
   const auto& a = f.attitude;
   const auto& p = f.position;
-  x[0] = a.q.w;
-  x[1] = a.q.x;
-  x[2] = a.q.y;
-  x[3] = a.q.z;
-  put(x + 4, p.velocity);
-  put(x + 7, p.position);
-  put(x + 10, a.bias);
-  put(x + 13, p.bias);
+  put_motion(x, a.q, p.velocity, p.position, a.bias, p.bias);
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j) P[i * 15 + j] = a.P.P[i][j];
   for (int i = 0; i < 9; ++i)

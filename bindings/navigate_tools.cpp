@@ -11,10 +11,6 @@ namespace {
 
 using Vec = Vec3<double>;
 
-void check(bool good, const char* what) {
-  if (!good) throw nb::value_error(what);
-}
-
 Vec at(const double* p) { return {p[0], p[1], p[2]}; }
 
 }  // namespace

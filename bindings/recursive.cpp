@@ -10,10 +10,6 @@ namespace {
 
 constexpr int kMost = 32;
 
-void check(bool good, const char* what) {
-  if (!good) throw nb::value_error(what);
-}
-
 }  // namespace
 
 void bind_recursive(nb::module_& m) {

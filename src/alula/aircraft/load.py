@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from pydantic import ValidationError
 
 from alula.aircraft.aircraft import SENSOR_GROUPS, Aircraft, Envelope, Uncertainty
 from alula.aircraft.control_signs import sign_factor
@@ -17,8 +16,8 @@ from alula.aircraft.load_geometry import geometry
 from alula.aircraft.load_mass import mass_model
 from alula.aircraft.schema import AircraftFile, Control, UncertaintyTable
 from alula.base.arrays import frozen
-from alula.base.messages import BadInput, Message, refuse, warn
-from alula.base.project_messages import expand, explain, read_toml
+from alula.base.messages import Message, refuse, warn
+from alula.base.project_messages import expand, read_toml, validated
 from alula.base.units import known_channel
 
 
@@ -34,10 +33,7 @@ def load_aircraft(path: str | Path) -> Aircraft:
     """
     path = Path(path)
     text, tables, sha256 = read_toml(path)
-    try:
-        file = AircraftFile.model_validate(tables)
-    except ValidationError as error:
-        raise BadInput(*explain(error, path, text)) from None
+    file = validated(AircraftFile, tables, path, text)
     turn = rotation(file.datum.frame)
     mass = mass_model(file.mass, turn, path) if file.mass else None
     if file.reference.point is not None:

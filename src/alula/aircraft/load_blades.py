@@ -7,13 +7,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from pydantic import ValidationError
 
 from alula.aircraft.blades import BladePolar, Blades, MomentumParameters
 from alula.aircraft.schema_blades import BladesTable, PolarParameters
 from alula.base.arrays import frozen
-from alula.base.messages import BadInput
-from alula.base.project_messages import explain
+from alula.base.project_messages import validated
 
 
 def load_blades(table: Mapping[str, Any], where: str) -> Blades:
@@ -22,11 +20,7 @@ def load_blades(table: Mapping[str, Any], where: str) -> Blades:
     Raises BadInput with one message per thing that is wrong: stations out of order, a chord of
     zero, a polar that is not finite, columns of different length.
     """
-    try:
-        checked = BladesTable.model_validate(dict(table))
-    except ValidationError as error:
-        raise BadInput(*explain(error, Path(where))) from None
-    return blades_of(checked, where)
+    return blades_of(validated(BladesTable, table, Path(where)), where)
 
 
 def blades_of(table: BladesTable, where: str) -> Blades:

@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from pydantic import ValidationError
-
 from alula.aircraft.blades import Blades
 from alula.aircraft.load_blades import blades_of
 from alula.aircraft.propeller_files import read_blades
 from alula.aircraft.schema_blades import FitTable, PropellerFile, StaticTestTable, TestTable
-from alula.base.messages import BadInput, refuse
-from alula.base.project_messages import explain, read_toml
+from alula.base.messages import refuse
+from alula.base.project_messages import read_toml, validated
 
 
 @dataclass(frozen=True)
@@ -46,10 +44,7 @@ def load_propeller(
             do="Leave the options out; they are for geometry files that state neither.",
         )
     text, tables, _ = read_toml(path)
-    try:
-        file = PropellerFile.model_validate(tables)
-    except ValidationError as error:
-        raise BadInput(*explain(error, path, text)) from None
+    file = validated(PropellerFile, tables, path, text)
     table = file.blades.model_copy(update={"name": file.blades.name or file.name})
     rpm = file.rpm if file.rpm is not None or file.test is None else file.test.rpm
     return PropellerDescription(

@@ -8,13 +8,15 @@ from __future__ import annotations
 
 from itertools import pairwise
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, ValidationError, model_validator
+from pydantic import Field, model_validator
 
+from alula.base.file_schema import Identifier, Quantity, ReadFile, Strict
 from alula.base.filters import FilterName
-from alula.base.messages import BadInput, Message
-from alula.base.project_messages import check_units, expand, explain, read_toml
+from alula.base.messages import BadInput
+from alula.base.project_messages import check_units, expand_paths, read_toml, validated
+from alula.base.project_references import references
 from alula.base.units import to_si
 
 Repair = Literal["drop_duplicate_times", "drop_backward_times", "drop_ragged_rows"]
@@ -32,15 +34,6 @@ Option = (
     | dict[str, str]
     | dict[str, list[float]]
 )
-Identifier = Annotated[str, Field(pattern=r"^[\w][\w .+-]*$", max_length=80)]
-
-
-class Strict(BaseModel):
-    """Unknown keys are errors and values do not change once they are read."""
-
-    model_config = ConfigDict(
-        extra="forbid", frozen=True, populate_by_name=True, allow_inf_nan=False, strict=True
-    )
 
 
 class TimeSpec(Strict):
@@ -144,7 +137,7 @@ class ManeuverSpec(Strict):
     start: float
     end: float
     aspect: Literal["longitudinal", "lateral", "both"] = "both"
-    configuration: dict[str, str] = {}
+    configuration: dict[str, str] = Field(default={})
     held_out: bool = False
     on_gap: Literal["refuse", "split"] = "refuse"
 
@@ -153,16 +146,6 @@ class ManeuverSpec(Strict):
         if self.end <= self.start:
             raise ValueError(f"'end' after 'start'|{self.start:g} to {self.end:g} s")
         return self
-
-
-class Quantity(Strict):
-    """Base of entries that state their numbers in a unit; none means SI."""
-
-    unit: str | None = None
-
-    def in_si(self, value: float) -> float:
-        """`value` by the scale of the unit (an offset, as of degC, does not apply)."""
-        return value * to_si(self.unit).scale if self.unit else value
 
 
 class NoiseSpec(Quantity):
@@ -227,9 +210,9 @@ class ReconstructSpec(Strict):
     vibration_filter_hz: float = Field(
         default=0.0, ge=0, description="low-pass of inertial channels and controls; 0: none"
     )
-    imu: dict[Literal["ax", "ay", "az", "p", "q", "r"], NoiseSpec] = {}
-    unknowns: dict[str, UnknownSpec] = {}
-    sensors: dict[str, SensorSpec] = {}
+    imu: dict[Literal["ax", "ay", "az", "p", "q", "r"], NoiseSpec] = Field(default={})
+    unknowns: dict[str, UnknownSpec] = Field(default={})
+    sensors: dict[str, SensorSpec] = Field(default={})
 
 
 class NavigateSpec(Strict):
@@ -263,8 +246,8 @@ class IdentifySpec(Strict):
 
     method: str = "ee"
     coefficients_from: Literal["motion", "recorded"] = "motion"
-    models: dict[str, str] = {}
-    options: dict[str, Option] = {}
+    models: dict[str, str] = Field(default={})
+    options: dict[str, Option] = Field(default={})
     hold_out: float = Field(
         default=0.2,
         ge=0.0,
@@ -274,31 +257,18 @@ class IdentifySpec(Strict):
     )
 
 
-class Project(Strict):
+class Project(ReadFile):
     """A project file as it was read; paths are absolute."""
 
     schema_: Literal["alula.project/1"] = Field(alias="schema")
     name: str
     aircraft: Path | None = Field(default=None, strict=False)
     logs: list[LogSpec] = Field(min_length=1)
-    channels: dict[str, ChannelSpec] = {}
-    maneuvers: list[ManeuverSpec] = []
+    channels: dict[str, ChannelSpec] = Field(default={})
+    maneuvers: list[ManeuverSpec] = Field(default=[])
     reconstruct: ReconstructSpec = ReconstructSpec()
     navigate: NavigateSpec = NavigateSpec()
     identify: IdentifySpec = IdentifySpec()
-
-    _path: Path = PrivateAttr(default=Path())
-    _sha256: str = PrivateAttr(default="")
-
-    @property
-    def path(self) -> Path:
-        """The file that was read."""
-        return self._path
-
-    @property
-    def sha256(self) -> str:
-        """Hexadecimal SHA-256 of the file that was read."""
-        return self._sha256
 
     def log(self, id: str) -> LogSpec:
         """The log of that id (the maneuvers' references are checked on loading)."""
@@ -316,71 +286,10 @@ def load_project(path: Path | str) -> Project:
     """
     path = Path(path)
     text, tree, sha256 = read_toml(path)
-    _resolve_paths(tree, path)
-    try:
-        project = Project.model_validate(tree)
-    except ValidationError as error:
-        raise BadInput(*explain(error, path, text)) from None
-    problems = _references(project, path) + check_units(project, path)
+    expand_paths(tree, path, ("aircraft",), "logs", ("path", "aircraft"))
+    project = validated(Project, tree, path, text)
+    problems = references(project, path) + check_units(project, path)
     if problems:
         raise BadInput(*problems)
-    project._path = path.resolve()
-    project._sha256 = sha256
+    project._path, project._sha256 = path.resolve(), sha256
     return project
-
-
-def _resolve_paths(tree: dict[str, Any], path: Path) -> None:
-    if isinstance(tree.get("aircraft"), str):
-        tree["aircraft"] = expand(tree["aircraft"], path, "aircraft")
-    logs = tree.get("logs")
-    for i, log in enumerate(logs if isinstance(logs, list) else []):
-        for key in ("path", "aircraft") if isinstance(log, dict) else ():
-            if isinstance(log.get(key), str):
-                log[key] = expand(log[key], path, f"logs[{i + 1}].{key}")
-
-
-def _references(project: Project, path: Path) -> list[Message]:
-    """Ids that are double, maneuvers of logs that are not there, time bases that are not mapped."""
-    problems = []
-
-    def error(code: str, key: str, expected: str, found: str, do: str) -> None:
-        problems.append(Message(code, "error", f"{path}: {key}", expected, found, do))
-
-    for key, ids in (
-        ("logs", [log.id for log in project.logs]),
-        ("maneuvers", [maneuver.id for maneuver in project.maneuvers]),
-    ):
-        for id in sorted({id for id in ids if ids.count(id) > 1}):
-            error("duplicate_id", key, "each id once", f"'{id}' {ids.count(id)} times", "Rename.")
-    planned = [maneuver.id for maneuver in project.maneuvers]
-    for id in project.reconstruct.initial:
-        if id not in planned:
-            error(
-                "unknown_maneuver",
-                f"reconstruct.initial.{id}",
-                f"one of {', '.join(planned) or 'the maneuvers, of which there are none'}",
-                f"'{id}'",
-                "Name a maneuver of this project.",
-            )
-    known = [log.id for log in project.logs]
-    for i, maneuver in enumerate(project.maneuvers):
-        if maneuver.log not in known:
-            error(
-                "unknown_log",
-                f"maneuvers[{i + 1}].log",
-                f"one of {', '.join(known)}",
-                f"'{maneuver.log}'",
-                "Name a log of this project.",
-            )
-    for log in project.logs:
-        channels = project.channels_of(log)
-        for name, channel in channels.items():
-            if isinstance(channel.time, str) and channel.time not in channels:
-                error(
-                    "unknown_time_channel",
-                    f"channels.{name}.time",
-                    f"one of the channels: {', '.join(channels)}",
-                    f"'{channel.time}'",
-                    "Map that channel, or give time = {from = ..., unit = 's'}.",
-                )
-    return problems

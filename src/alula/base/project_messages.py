@@ -9,15 +9,18 @@ import hashlib
 import os
 import re
 import tomllib
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
 from alula.base.messages import BadInput, Message, refuse
 from alula.base.units import to_si
+
+_Schema = TypeVar("_Schema", bound=BaseModel)
 
 
 def read_toml(path: Path) -> tuple[str, dict[str, Any], str]:
@@ -64,6 +67,33 @@ def expand(text: str, file: Path, key: str) -> str:
 
     expanded = os.path.expanduser(re.sub(r"\$\{(\w+)\}", value, text))
     return os.path.abspath(file.parent / expanded)
+
+
+def expand_paths(
+    tree: dict[str, Any], file: Path, keys: Sequence[str], tables: str, inner: Sequence[str]
+) -> None:
+    """Expand the paths at `keys` and those at `inner` of each of [[tables]], where given."""
+
+    def in_table(table: dict[str, Any], names: Sequence[str], where: str) -> None:
+        for name in names:
+            if isinstance(table.get(name), str):
+                table[name] = expand(table[name], file, where + name)
+
+    in_table(tree, keys, "")
+    listed = tree.get(tables)
+    for i, table in enumerate(listed if isinstance(listed, list) else [], 1):
+        if isinstance(table, dict):
+            in_table(table, inner, f"{tables}[{i}].")
+
+
+def validated(
+    schema: type[_Schema], tree: Mapping[str, Any], path: Path, text: str = ""
+) -> _Schema:
+    """The tree as its schema; raises BadInput with one message for each thing that is wrong."""
+    try:
+        return schema.model_validate(dict(tree))
+    except ValidationError as error:
+        raise BadInput(*explain(error, path, text)) from None
 
 
 def explain(error: ValidationError, path: Path, text: str = "") -> list[Message]:

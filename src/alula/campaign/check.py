@@ -12,7 +12,8 @@ import numpy as np
 from alula.aircraft import Aircraft, control_sign_check, load_aircraft
 from alula.base.messages import Message, note, refuse
 from alula.base.project import Project, load_project
-from alula.flight import Flight, Maneuver, Motion
+from alula.campaign.named import named
+from alula.flight import Flight, Maneuver, Motion, SourceFile
 from alula.logs.card import LogCard, log_card
 from alula.logs.maneuvers import maneuvers
 from alula.logs.reader import read_all
@@ -40,6 +41,11 @@ class Checked:
     def aircraft_of(self, log: str) -> Aircraft:
         """The aircraft as it was loaded in the log of that id."""
         return self.loaded.get(log, self.aircraft)
+
+    @property
+    def files(self) -> tuple[SourceFile, ...]:
+        """What was read, log by log."""
+        return tuple(f for card in self.cards for f in card.files)
 
     @property
     def failed(self) -> bool:
@@ -76,7 +82,7 @@ def check_project(
     progress("reading logs")
     flights = read_all(project)
     found, said = maneuvers(project, flights)
-    chosen = _chosen(project, found, only)
+    chosen = named(project, found, only)
     messages = [*aircraft.messages, *said, *_signs(flights, chosen, aircraft)]
     messages += [m for other in loaded.values() for m in other.messages]
     cards = tuple(log_card(flight, found) for flight in flights.values())
@@ -130,31 +136,6 @@ def _loaded(project: Project, aircraft: Aircraft) -> dict[str, Aircraft]:
 
 def _positions(aircraft: Aircraft) -> dict[str, list[float]]:
     return {name: position.tolist() for name, position in aircraft.sensors.items()}
-
-
-def _chosen(
-    project: Project, found: Sequence[Maneuver], only: Sequence[str]
-) -> tuple[Maneuver, ...]:
-    """The maneuvers asked for, by their own id or, where split at gaps, by the whole one's."""
-    if not only:
-        return tuple(found)
-    wholes = [m.id for m in project.maneuvers]
-    names = {m.id: {m.id} for m in found}
-    for maneuver in found:
-        whole = maneuver.id.rpartition(".")[0]
-        if whole in wholes and maneuver.id not in wholes:
-            names[maneuver.id].add(whole)
-    known = {name for group in names.values() for name in group}
-    for id in only:
-        if id not in known:
-            raise refuse(
-                "unknown_maneuver",
-                where="--maneuver",
-                expected="one of " + (", ".join(sorted(known)) or "the project's, which has none"),
-                found=f"'{id}'",
-                do="Name a maneuver of the project file.",
-            )
-    return tuple(m for m in found if names[m.id] & set(only))
 
 
 def _signs(

@@ -132,7 +132,7 @@ def run_comparison(
                 do="Its R2 there tells how it fits, not how it predicts.",
             )
         )
-    files += [f for card in checked.cards for f in card.files]
+    files += checked.files
     return Comparison(
         sources, rows, judged, samples, tuple(d.maneuver for d in chosen), seen, tuple(files),
         tuple(dict.fromkeys(said)),

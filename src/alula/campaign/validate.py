@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from alula.base.messages import Message, note, refuse, warn
+from alula.base.messages import Message, note, refuse
 from alula.campaign.check import Checked, Progress, check_project
 from alula.campaign.hold_out import with_held_out
 from alula.campaign.job import (
@@ -22,23 +22,19 @@ from alula.campaign.job import (
     served_models,
     task_of,
 )
-from alula.campaign.learned import LEARNED, learned_from, seen_by
+from alula.campaign.learned import LEARNED, learned_from
 from alula.campaign.measured import measured_maneuvers
 from alula.campaign.methods import identify_by
+from alula.campaign.named import named
+from alula.campaign.validation_case import case_of, unequal_thrust
 from alula.flight import Maneuver
 from alula.identify import CoefficientData, Identification, identified_model
-from alula.identify.coefficients import Reference as DataReference
-from alula.identify.coefficients import regressor_variables
 from alula.identify.measured_maneuver import MeasuredManeuver
 from alula.model import AeroModel, Reference, load_model
-from alula.reconstruct import Reconstruction, Segment, reconstruct
-from alula.reconstruct.transfer import engines_on
+from alula.reconstruct import Reconstruction, reconstruct
 from alula.report import ReportInput
-from alula.simulate import airframe_of
-from alula.validate import Case, Reidentified, Validation, reidentify, validate
+from alula.validate import Reidentified, Validation, reidentify, validate
 from alula.validate.validate import DRAWS, Trim
-
-UNEQUAL = 0.02  # of the sum of thrusts, mean difference of an engine from the others
 
 
 @dataclass(frozen=True)
@@ -88,10 +84,14 @@ def run_validation(
     stamps = [time.perf_counter()]
     checked = check_project(path, (), progress)
     if only:
-        checked = _held_out(checked, only)
+        asked = {m.id for m in named(checked.project, checked.maneuvers, only)}
+        marked = (replace(m, held_out=True) if m.id in asked else m for m in checked.maneuvers)
+        checked = replace(checked, maneuvers=tuple(marked))
     elif given is None:  # a file's model is flown on all: each window says whether it saw it
         checked = with_held_out(checked, seed or 0)
-    chosen = _chosen(checked, only)
+    chosen = named(checked.project, checked.maneuvers, only)
+    if not only:
+        chosen = tuple(m for m in chosen if m.held_out) or chosen
     stamps.append(time.perf_counter())
     project = checked.project
     spec = project.reconstruct
@@ -131,12 +131,15 @@ def run_validation(
     stamps.append(time.perf_counter())
     ids = {m.id for m in chosen}
     cases = [
-        _case(checked, segment, item, given)
+        case_of(checked, segment, item, given)
         for segment, item in zip(reconstruction.segments, data, strict=True)
         if segment.maneuver.id in ids
     ]
     messages += tuple(
-        m for s in reconstruction.segments if s.maneuver.id in ids for m in _thrust(checked, s)
+        m
+        for s in reconstruction.segments
+        if s.maneuver.id in ids
+        for m in unequal_thrust(checked, s)
     )
     result = validate(
         given,
@@ -209,7 +212,7 @@ def _repeated(
     return reidentify(
         model,
         result,
-        [_case(checked, s, d, model) for s, d in learned],
+        [case_of(checked, s, d, model) for s, d in learned],
         [d for _, d in learned],
         readings,
         identify,
@@ -218,42 +221,6 @@ def _repeated(
         seed=seed,
         progress=progress,
     )
-
-
-def _held_out(checked: Checked, only: Sequence[str]) -> Checked:
-    """The project with the maneuvers that were asked for held out of the estimate."""
-    known = {name for m in checked.maneuvers for name in _names(checked, m)}
-    for id in only:
-        if id not in known:
-            raise refuse(
-                "unknown_maneuver",
-                where="--maneuver",
-                expected="one of " + (", ".join(sorted(known)) or "the project's, which has none"),
-                found=f"'{id}'",
-                do="Name a maneuver of the project file.",
-            )
-    return replace(
-        checked,
-        maneuvers=tuple(
-            replace(m, held_out=True) if _names(checked, m) & set(only) else m
-            for m in checked.maneuvers
-        ),
-    )
-
-
-def _names(checked: Checked, maneuver: Maneuver) -> set[str]:
-    """A maneuver's own id and, where it was split at gaps, the whole one's."""
-    own = {spec.id for spec in checked.project.maneuvers}
-    whole = maneuver.id.rpartition(".")[0]
-    return {maneuver.id} | ({whole} if maneuver.id not in own and whole in own else set())
-
-
-def _chosen(checked: Checked, only: Sequence[str]) -> tuple[Maneuver, ...]:
-    """The maneuvers to fly."""
-    if only:
-        return tuple(m for m in checked.maneuvers if _names(checked, m) & set(only))
-    held = tuple(m for m in checked.maneuvers if m.held_out)
-    return held or checked.maneuvers
 
 
 def _shared(share: str, filter: str, chosen: Sequence[Maneuver]) -> list[Message]:
@@ -285,59 +252,3 @@ def _reference(model: AeroModel, checked: Checked, path: str) -> list[Message]:
             do="Take the model of this aircraft, or correct the reference geometry.",
         )
     return []
-
-
-def _thrust(checked: Checked, segment: Segment) -> list[Message]:
-    """A warning where engines pull unequally: the simulator is given their sum, shared evenly."""
-    aircraft = checked.aircraft_of(segment.maneuver.log)
-    flight = checked.flights[segment.maneuver.log]
-    forces = engines_on(flight, aircraft, segment.motion.t)
-    if len(forces) < 2:
-        return []
-    each = np.array(list(forces.values()))
-    total = np.abs(each.sum(axis=0)).mean()
-    off = float(np.abs(each - each.mean(axis=0)).mean())
-    if total == 0.0 or off <= UNEQUAL * total:
-        return []
-    return [
-        warn(
-            "unequal_thrust",
-            where=f"maneuver {segment.maneuver.id}",
-            expected="engines that pull alike",
-            found=f"thrusts that differ from their mean by {100.0 * off / total:.2g} % of the sum",
-            do="The sum was flown, shared evenly: the moment of the difference is missing.",
-        )
-    ]
-
-
-def _case(checked: Checked, segment: Segment, item: CoefficientData, model: AeroModel) -> Case:
-    """What validation needs of one maneuver, from the stages before it."""
-    motion, flight = segment.motion, checked.flights[segment.maneuver.log]
-    aircraft = checked.aircraft_of(segment.maneuver.log)
-    forces = engines_on(flight, aircraft, motion.t)
-    reference = DataReference(
-        model.reference.S, model.reference.b, model.reference.c, model.reference_point
-    )
-    fuel = 0.0 if motion.fuel_used is None else float(motion.fuel_used[0])
-    given = ("V", "alpha", "beta", "p", "q", "r", "phi", "theta", "psi", "h", "ax", "ay", "az")
-    filtered = {*segment.state_names, "V", "alpha", "beta"} if segment.state_names else set()
-    return Case(
-        motion=motion,
-        airframe=airframe_of(aircraft, fuel),
-        seen=seen_by(model, segment.maneuver, flight),
-        area=aircraft.S,
-        thrust=sum(forces.values(), np.zeros(len(motion.t))) if forces else None,
-        coefficients=item.coefficients,
-        variables=regressor_variables(motion, reference),
-        missing=tuple(n for n in given if n not in flight and n not in filtered),
-        force=np.asarray(
-            sum(
-                (
-                    np.outer(forces[e.name], e.direction)
-                    for e in aircraft.engines
-                    if e.name in forces
-                ),
-                np.zeros((len(motion.t), 3)),
-            )
-        ),
-    )

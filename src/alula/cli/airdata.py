@@ -10,6 +10,7 @@ import typer
 from alula.cli.contract import (
     Command,
     JsonOption,
+    ProjectArgument,
     QuietOption,
     SeedOption,
     ThreadsOption,
@@ -18,7 +19,7 @@ from alula.cli.contract import (
 
 
 def airdata(
-    project: Annotated[Path, typer.Argument(metavar="PROJECT", help="The project file.")],
+    project: ProjectArgument,
     log: Annotated[
         list[str] | None, typer.Option(metavar="ID", help="Only this log; several times.")
     ] = None,
@@ -47,8 +48,7 @@ def airdata(
     """
     command = Command("airdata", json, seed, threads, quiet)
     with command.run():
-        if report is not None:
-            writable(report, "report")
+        writable(report, "report")
         from alula.campaign.airdata import run_air_data
 
         done = run_air_data(

@@ -11,6 +11,7 @@ from alula.cli.contract import (
     Command,
     JsonOption,
     QuietOption,
+    ReportOption,
     SeedOption,
     ThreadsOption,
     writable,
@@ -25,9 +26,7 @@ def calibrate(
     out: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write the calibration there, as TOML.")
     ] = None,
-    report: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write the HTML report there.")
-    ] = None,
+    report: ReportOption = None,
     json: JsonOption = "",
     seed: SeedOption = None,
     threads: ThreadsOption = 1,
@@ -39,10 +38,8 @@ def calibrate(
     """
     command = Command("calibration_result", json, seed, threads, quiet)
     with command.run():
-        if out is not None:
-            writable(out, "calibration")
-        if report is not None:
-            writable(report, "report")
+        writable(out, "calibration")
+        writable(report, "report")
         from alula.base.files import write_whole
         from alula.navigate.calibration import calibrate as run
         from alula.navigate.calibration import calibration_text
@@ -62,9 +59,7 @@ def calibrate(
 
             write_whole(report, calibration_page(found))
         command.say(_text(found))
-        for what, path in (("Calibration", out), ("Report", report)):
-            if path is not None:
-                command.say(f"\n{what}: {path}")
+        command.written(Calibration=out, Report=report)
 
 
 def _result(found: Calibrated) -> dict[str, Any]:

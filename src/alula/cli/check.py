@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import sys
 from dataclasses import replace
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 from alula.cli.contract import (
     Command,
     JsonOption,
+    ProjectArgument,
     QuietOption,
     SeedOption,
     ThreadsOption,
@@ -24,7 +22,7 @@ WIDTH = 130  # characters that the tables of a log card ask for
 
 
 def check(
-    project: Annotated[Path, typer.Argument(metavar="PROJECT", help="The project file.")],
+    project: ProjectArgument,
     json: JsonOption = "",
     seed: SeedOption = None,
     threads: ThreadsOption = 1,
@@ -40,7 +38,7 @@ def check(
 
         checked = check_project(str(project), progress=command.progress)
         command.messages = checked.all_messages()
-        command.inputs = [f for card in checked.cards for f in card.files]
+        command.inputs = checked.files
         command.result = {"logs": [card.as_dict() for card in checked.cards]}
         if checked.failed:
             command.status = "check_failed"

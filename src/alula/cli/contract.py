@@ -9,9 +9,10 @@ import re
 import sys
 import time
 import traceback
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TextIO
 
@@ -21,6 +22,7 @@ from alula.base.messages import BadInput, Message, refuse
 
 if TYPE_CHECKING:
     from alula.flight import SourceFile
+    from alula.report import ReportInput
 
 # Control characters, escapes that are no color, and marks that turn the direction of writing.
 _STEERING = re.compile(
@@ -32,6 +34,10 @@ Status = Literal["ok", "not_identifiable", "check_failed", "bad_input"]
 OWN_FAULT = 70  # sysexits: internal software error
 EXIT: Mapping[Status, int] = {"ok": 0, "not_identifiable": 1, "check_failed": 1, "bad_input": 2}
 
+ProjectArgument = Annotated[Path, typer.Argument(metavar="PROJECT", help="The project file.")]
+ReportOption = Annotated[
+    Path | None, typer.Option(metavar="FILE", help="Write the HTML report there.")
+]
 JsonOption = Annotated[
     str, typer.Option("--json", metavar="FILE|-", help="Write the result as JSON; - is stdout.")
 ]
@@ -79,6 +85,21 @@ class Command:
         """Text for people, on stdout; nothing where stdout is JSON."""
         if self.talks:
             _out(text + "\n", sys.stdout)
+
+    def written(self, **files: Path | None) -> None:
+        """Say where each file that was asked for stands now."""
+        for kind, path in files.items():
+            if path is not None:
+                self.say(f"\n{kind}: {path}")
+
+    def write_report(self, path: Path, report_of: Callable[[str, int | None], ReportInput]) -> None:
+        """Write the page of what `report_of` makes of date and seed."""
+        from alula.base.files import write_whole
+        from alula.report import render
+
+        self.progress("writing the report")
+        date = datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC")
+        write_whole(path, render(report_of(date, self.seed)))
 
     @contextmanager
     def run(self) -> Iterator[None]:
@@ -200,12 +221,14 @@ def finite(value: Any, where: str, lost: list[str]) -> Any:
     return value
 
 
-def writable(path: Path, kind: Kind = "") -> None:
+def writable(path: Path | None, kind: Kind = "") -> None:
     """Raise BadInput at once if a file could not be written there after the work is done.
 
-    kind: of what Alula writes. A file that is there already is replaced only if it is of that
-    kind: a slip in the options must not cost a log.
+    path: None where none was asked for. kind: of what Alula writes. A file that is there already
+    is replaced only if it is of that kind: a slip in the options must not cost a log.
     """
+    if path is None:
+        return
     folder = path.absolute().parent
     expected, do = "", "Choose another path; nothing was done yet."
     if not folder.is_dir() or not os.access(folder, os.W_OK):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import degrees
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -11,8 +12,6 @@ from alula.cli.contract import Command, JsonOption, QuietOption, SeedOption
 
 if TYPE_CHECKING:
     from alula.simulate.virtual_campaign import Campaign
-
-_DEG = 57.29577951308232
 
 
 def fly(
@@ -45,16 +44,14 @@ def fly(
     """
     command = Command("flight", json, seed, quiet=quiet)
     with command.run():
-        from alula.base.files import sha256
-        from alula.flight import SourceFile
+        from alula.cli.condition import source_of
         from alula.simulate.virtual_campaign import fly_plan
         from alula.simulate.virtual_plan import load_plan
 
         asked = load_plan(plan)
         command.seed = asked.seed if seed is None else seed
         folder = out or Path(plan.name).with_suffix("")
-        size = plan.stat().st_size
-        command.inputs = [SourceFile(str(plan), sha256(plan), size, size, 0, 0)]
+        command.inputs = [source_of(plan)]
         found = fly_plan(
             asked, folder, seed=seed, threads=threads, sample=sample, progress=command.progress
         )
@@ -86,9 +83,9 @@ def result_of(found: Campaign) -> dict[str, Any]:
                 "samples": w.samples,
                 "duration_s": w.plan.maneuver.end,
                 "trim": {
-                    "alpha_deg": w.trim.alpha * _DEG,
-                    "theta_deg": w.trim.theta * _DEG,
-                    "de_deg": w.trim.controls["de"] * _DEG,
+                    "alpha_deg": degrees(w.trim.alpha),
+                    "theta_deg": degrees(w.trim.theta),
+                    "de_deg": degrees(w.trim.controls["de"]),
                     "thrust": w.trim.thrust,
                 },
                 "files": [{"path": f.name, "bytes": f.bytes, "sha256": f.sha256} for f in w.files],

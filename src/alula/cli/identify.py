@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from enum import StrEnum
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -13,7 +14,9 @@ from alula.base.filters import FilterName
 from alula.cli.contract import (
     Command,
     JsonOption,
+    ProjectArgument,
     QuietOption,
+    ReportOption,
     SeedOption,
     ThreadsOption,
     writable,
@@ -34,16 +37,14 @@ class Method(StrEnum):
 
 
 def identify(
-    project: Annotated[Path, typer.Argument(metavar="PROJECT", help="The project file.")],
+    project: ProjectArgument,
     method: Annotated[Method | None, typer.Option(help="Instead of the project's.")] = None,
     filter: Annotated[FilterName | None, typer.Option(help="Instead of the project's.")] = None,
     maneuver: Annotated[
         list[str] | None,
         typer.Option(metavar="ID", help="Only this maneuver; may be given several times."),
     ] = None,
-    report: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write the HTML report there.")
-    ] = None,
+    report: ReportOption = None,
     model: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write the identified model there.")
     ] = None,
@@ -63,11 +64,9 @@ def identify(
     """
     command = Command("identification", json, seed, threads, quiet)
     with command.run():
-        if report is not None:
-            writable(report, "report")
-        if model is not None:
-            writable(model, "model")
-        from alula.campaign import run_project
+        writable(report, "report")
+        writable(model, "model")
+        from alula.campaign import report_of, run_project
 
         job = run_project(
             str(project),
@@ -79,7 +78,7 @@ def identify(
             progress=command.progress,
         )
         command.messages = job.all_messages()
-        command.inputs = [f for card in job.checked.cards for f in card.files]
+        command.inputs = job.checked.files
         command.timing = job.seconds
         command.result = result_of(job)
         if not job.identification.identifiable:
@@ -89,11 +88,9 @@ def identify(
         if model is not None:
             _write_model(job, model, command)
         if report is not None:
-            _write_report(job, report, command)
+            command.write_report(report, partial(report_of, job))
         command.say(text_of(job))
-        for label, path in (("Model", model), ("Report", report)):
-            if path is not None:
-                command.say(f"\n{label}: {path}")
+        command.written(Model=model, Report=report)
 
 
 def result_of(job: Job) -> dict[str, Any]:
@@ -219,18 +216,6 @@ def _truth(path: Path) -> dict[str, float]:
         ) from None
 
 
-def _write_report(job: Job, path: Path, command: Command) -> None:
-    from datetime import UTC, datetime
-
-    from alula.base.files import write_whole
-    from alula.campaign import report_of
-    from alula.report import render
-
-    command.progress("writing the report")
-    date = datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC")
-    write_whole(path, render(report_of(job, date, command.seed)))
-
-
 def _write_model(job: Job, path: Path, command: Command) -> None:
     from alula.base.provenance import provenance
     from alula.campaign.learned import LEARNED, learned_from
@@ -246,7 +231,7 @@ def _write_model(job: Job, path: Path, command: Command) -> None:
         data=learned,
         reference_point=aircraft.reference_point,
         provenance={
-            **{f.path: f.sha256 for card in job.checked.cards for f in card.files},
+            **{f.path: f.sha256 for f in job.checked.files},
             LEARNED: learned_from(learned, job.checked.flights),
             "alula": provenance(command.seed)["alula"],
         },

@@ -62,8 +62,7 @@ def modes(
     """
     command = Command("modes", json, seed, threads, quiet)
     with command.run():
-        if plot is not None:
-            writable(plot, "picture")
+        writable(plot, "picture")
         from alula.simulate import judge, modes_of
 
         loaded = load(asked)
@@ -95,8 +94,7 @@ def modes(
             title = f"{loaded.aircraft.name}, {loaded.condition.words}"
             write_whole(plot, s_plane(roots, title, alone=True) + "\n")
         command.say(f"{loaded.aircraft.name}, {loaded.condition.words}\n{text_of(roots, judged)}")
-        if plot is not None:
-            command.say(f"\nPicture: {plot}")
+        command.written(Picture=plot)
 
 
 def modes_result(

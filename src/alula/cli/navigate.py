@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from enum import StrEnum
+from functools import partial
 from math import degrees
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -12,7 +12,9 @@ import typer
 from alula.cli.contract import (
     Command,
     JsonOption,
+    ProjectArgument,
     QuietOption,
+    ReportOption,
     SeedOption,
     ThreadsOption,
     writable,
@@ -31,16 +33,14 @@ class NavigationFilter(StrEnum):
 
 
 def navigate(
-    project: Annotated[Path, typer.Argument(metavar="PROJECT", help="The project file.")],
+    project: ProjectArgument,
     log: Annotated[
         list[str] | None, typer.Option(metavar="ID", help="Only this log; may be repeated.")
     ] = None,
     filter: Annotated[
         NavigationFilter | None, typer.Option(help="Instead of the project's.")
     ] = None,
-    report: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write the HTML report there.")
-    ] = None,
+    report: ReportOption = None,
     json: JsonOption = "",
     seed: SeedOption = None,
     threads: ThreadsOption = 1,
@@ -52,9 +52,8 @@ def navigate(
     """
     command = Command("navigation", json, seed, threads, quiet)
     with command.run():
-        if report is not None:
-            writable(report, "report")
-        from alula.campaign.navigate import run_navigation
+        writable(report, "report")
+        from alula.campaign.navigate import report_of_navigation, run_navigation
 
         done = run_navigation(
             str(project),
@@ -63,16 +62,15 @@ def navigate(
             progress=command.progress,
         )
         command.messages = done.all_messages()
-        command.inputs = [f for card in done.checked.cards for f in card.files]
+        command.inputs = done.checked.files
         command.timing = done.seconds
         command.result = {"logs": [result_of(name, done) for name in done.found]}
         if done.failed:
             command.status = "check_failed"
         if report is not None:
-            _write_report(done, report, command)
+            command.write_report(report, partial(report_of_navigation, done))
         command.say("\n".join(text_of(name, done) for name in done.found))
-        if report is not None:
-            command.say(f"\nReport: {report}")
+        command.written(Report=report)
 
 
 def result_of(name: str, done: NavigationJob) -> dict[str, Any]:
@@ -137,15 +135,3 @@ def text_of(name: str, done: NavigationJob) -> str:
         words = ", ".join(f"{k} {degrees(v):.2f}" for k, v in difference.items())
         lines.append(f"  estimate minus recorded, rms of the second half: {words} deg")
     return "\n".join(lines)
-
-
-def _write_report(done: NavigationJob, path: Path, command: Command) -> None:
-    from datetime import UTC, datetime
-
-    from alula.base.files import write_whole
-    from alula.campaign.navigate import report_of_navigation
-    from alula.report import render
-
-    command.progress("writing the report")
-    date = datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC")
-    write_whole(path, render(report_of_navigation(done, date, command.seed)))

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from enum import StrEnum
+from math import degrees
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from alula.cli.condition import Engines, EnginesOption
+from alula.cli.condition import AircraftArgument, Engines, EnginesOption, source_of
 from alula.cli.contract import (
     Command,
     JsonOption,
@@ -19,8 +20,6 @@ from alula.cli.contract import (
 
 if TYPE_CHECKING:
     from alula.plan import Design, Prediction
-
-_DEG = 57.29577951308232
 
 
 class Method(StrEnum):
@@ -40,7 +39,7 @@ class Kind(StrEnum):
 
 
 def plan(
-    aircraft: Annotated[Path, typer.Argument(metavar="AIRCRAFT", help="The aircraft file.")],
+    aircraft: AircraftArgument,
     V: Annotated[float, typer.Option("--V", metavar="M/S", help="True airspeed, m/s.")],
     h: Annotated[float, typer.Option("--h", metavar="M", help="Height, m.")],
     model: Annotated[
@@ -79,8 +78,7 @@ def plan(
     """
     command = Command("design", json, seed, threads, quiet)
     with command.run():
-        from alula.base.files import sha256, write_whole
-        from alula.flight import SourceFile
+        from alula.base.files import write_whole
         from alula.model import load_model
         from alula.plan import design
 
@@ -100,11 +98,7 @@ def plan(
             method=method.value,
             **given,
         )
-        command.inputs = [
-            SourceFile(str(p), sha256(p), size, size, 0, 0)
-            for p in (aircraft, aero)
-            for size in (p.stat().st_size,)
-        ]
+        command.inputs = [source_of(aircraft), source_of(aero)]
         command.messages = found.messages
         command.result = result_of(found)
         if any(p.verdict == "not told" for p in found.together):
@@ -193,7 +187,7 @@ def plan_text(found: Design, folder: Path) -> str:
     for m in found.maneuvers:
         head += [
             f"# {m.id}: {i.control} {i.kind}, {mode_words(i.timing.mode)} "
-            f"{i.timing.frequency:.3g} rad/s, {i.amplitude * _DEG:.2f} deg, bounded by {i.bound}"
+            f"{i.timing.frequency:.3g} rad/s, {degrees(i.amplitude):.2f} deg, bounded by {i.bound}"
             for i in m.inputs
         ]
     return "\n".join(head) + "\n" + toml_text(tree)
@@ -204,8 +198,8 @@ def result_of(found: Design) -> dict[str, Any]:
     return {
         "method": found.method,
         "trim": {
-            "alpha_deg": found.trim.alpha * _DEG,
-            "de_deg": found.trim.controls["de"] * _DEG,
+            "alpha_deg": degrees(found.trim.alpha),
+            "de_deg": degrees(found.trim.controls["de"]),
             "thrust": found.trim.thrust,
         },
         "modes": [
@@ -219,7 +213,7 @@ def result_of(found: Design) -> dict[str, Any]:
                     {
                         "control": i.control,
                         "kind": i.kind,
-                        "amplitude_deg": i.amplitude * _DEG,
+                        "amplitude_deg": degrees(i.amplitude),
                         "bounded_by": i.bound,
                         "width_s": i.timing.width,
                         "mode": i.timing.mode,
@@ -229,7 +223,7 @@ def result_of(found: Design) -> dict[str, Any]:
                 ],
                 "reached": {
                     (f"{k}_deg" if k in ("alpha", "beta", "phi") else k): [
-                        v * (_DEG if k in ("alpha", "beta", "phi") else 1.0) for v in pair
+                        degrees(v) if k in ("alpha", "beta", "phi") else v for v in pair
                     ]
                     for k, pair in m.reached.items()
                 },
@@ -266,12 +260,12 @@ def text_of(found: Design) -> str:
         lines.append(f"Maneuver {m.id}")
         for i in m.inputs:
             lines.append(
-                f"  {i.control} {i.kind:<13}{i.amplitude * _DEG:>8.2f} deg (bounded by {i.bound}), "
-                f"step {i.timing.width:.2f} s for the {mode_words(i.timing.mode)}, "
-                f"{i.timing.frequency:.2f} rad/s"
+                f"  {i.control} {i.kind:<13}{degrees(i.amplitude):>8.2f} deg "
+                f"(bounded by {i.bound}), step {i.timing.width:.2f} s for the "
+                f"{mode_words(i.timing.mode)}, {i.timing.frequency:.2f} rad/s"
             )
         low, high = m.reached["n"]
-        a, b = (x * _DEG for x in m.reached["alpha"])
+        a, b = (degrees(x) for x in m.reached["alpha"])
         slow, fast = m.reached["V"]
         lines.append(
             f"  reaches n {low:.2f} to {high:.2f}, alpha {a:.1f} to {b:.1f} deg, "

@@ -106,9 +106,9 @@ def predict(
     """
     command = Command("prediction", json, seed, threads, quiet)
     with command.run():
-        for path, kind in ((model, "model"), (report, "report"), (three_view, "three_view")):
-            if path is not None:
-                writable(path, kind)  # type: ignore[arg-type]
+        writable(model, "model")
+        writable(report, "report")
+        writable(three_view, "three_view")
         from alula.campaign.predict import Asked, run_prediction
         from alula.cli.condition import source_of
         from alula.cli.predict_output import result_of, text_of

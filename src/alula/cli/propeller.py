@@ -91,7 +91,7 @@ def propeller(
         command.say(text_of(work))
         if plot is not None:
             _write(plot, work)
-            command.say(f"\nPicture: {plot}")
+        command.written(Picture=plot)
 
 
 @dataclass

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import asdict
 from enum import StrEnum
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -13,7 +14,9 @@ from alula.base.filters import FilterName
 from alula.cli.contract import (
     Command,
     JsonOption,
+    ProjectArgument,
     QuietOption,
+    ReportOption,
     SeedOption,
     ThreadsOption,
     writable,
@@ -33,7 +36,7 @@ class Trim(StrEnum):
 
 
 def validate(
-    project: Annotated[Path, typer.Argument(metavar="PROJECT", help="The project file.")],
+    project: ProjectArgument,
     model: Annotated[
         Path | None,
         typer.Option(metavar="FILE", help="Fly this model instead of identifying one."),
@@ -44,9 +47,7 @@ def validate(
             metavar="ID", help="Fly this maneuver, held out of the estimate; may be repeated."
         ),
     ] = None,
-    report: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write the HTML report there.")
-    ] = None,
+    report: ReportOption = None,
     filter: Annotated[FilterName | None, typer.Option(help="Instead of the project's.")] = None,
     trim: Annotated[
         Trim,
@@ -73,9 +74,8 @@ def validate(
     """
     command = Command("validation", json, seed, threads, quiet)
     with command.run():
-        if report is not None:
-            writable(report, "report")
-        from alula.campaign.validate import run_validation
+        writable(report, "report")
+        from alula.campaign.validate import report_of_validation, run_validation
 
         done = run_validation(
             str(project),
@@ -90,7 +90,7 @@ def validate(
             progress=command.progress,
         )
         command.messages = done.all_messages()
-        command.inputs = [f for card in done.job.checked.cards for f in card.files]
+        command.inputs = done.job.checked.files
         command.timing = done.job.seconds
         command.result = result_of(done)
         if (
@@ -100,10 +100,9 @@ def validate(
         ):
             command.status = "check_failed"
         if report is not None:
-            _write_report(done, report, command)
+            command.write_report(report, partial(report_of_validation, done))
         command.say(text_of(done))
-        if report is not None:
-            command.say(f"\nReport: {report}")
+        command.written(Report=report)
 
 
 def result_of(done: ValidationJob) -> dict[str, Any]:
@@ -233,15 +232,3 @@ def text_of(done: ValidationJob) -> str:
             for r in done.reidentified
         ]
     return "\n".join([*lines, "", found.status])
-
-
-def _write_report(done: ValidationJob, path: Path, command: Command) -> None:
-    from datetime import UTC, datetime
-
-    from alula.base.files import write_whole
-    from alula.campaign.validate import report_of_validation
-    from alula.report import render
-
-    command.progress("writing the report")
-    date = datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC")
-    write_whole(path, render(report_of_validation(done, date, command.seed)))

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from alula.base.arrays import Array
-from alula.base.messages import Message, refuse
+from alula.base.messages import Message
 from alula.identify.coefficients import CoefficientData
 from alula.identify.control_sign import contradicted, signs_checked
 from alula.identify.diagnostics import diagnose
@@ -23,7 +23,7 @@ from alula.identify.regression import Regression
 from alula.identify.regressor_noise import warn_of_bias
 from alula.identify.result import Fit, History, Identification, Parameter, Series
 from alula.identify.structure import Structure
-from alula.identify.task import CoefficientTask, serving, uneven
+from alula.identify.task import CoefficientTask, need_models, serving, uneven
 from alula.identify.verdict import assess
 from alula.model import reference_scales
 
@@ -79,14 +79,7 @@ def identify_each(
     Raises BadInput where no model is asked for, and for a coefficient that the data do not have or
     that no maneuver serves.
     """
-    if not models:
-        raise refuse(
-            "no_model",
-            where="models",
-            expected="a formula for at least one coefficient",
-            found="none",
-            do='State one, e.g. Cm = "1 + alpha + qhat + de".',
-        )
+    need_models(models)
     fits: dict[str, Fit] = {}
     found: list[Parameter] = []
     series: list[Series] = []

@@ -31,6 +31,7 @@ from alula.identify.output_error_problem import STATE_SETS, FlightProblem, Setti
 from alula.identify.output_error_start import regressor_variables, start_values
 from alula.identify.result import Identification, Parameter
 from alula.identify.saturation import without_saturated
+from alula.identify.task import need_models
 from alula.identify.typical import typical_magnitude, unit
 from alula.model import AeroModel, Reference, aero_model, parse, reference_scales
 
@@ -77,14 +78,7 @@ def identify_output_error(
     and own constants are fitted to itself. Raises BadInput for names that do not exist and for
     data that lack what the model needs; a search that fails is a result whose status says why.
     """
-    if not models:
-        raise refuse(
-            "no_model",
-            where="models",
-            expected="a formula for at least one coefficient",
-            found="none",
-            do='State one, e.g. Cm = "1 + alpha + qhat + de".',
-        )
+    need_models(models)
     whole = [without_saturated(m) for m in maneuvers]
     maneuvers = [m for m, _ in whole]
     learn = [m for m in maneuvers if not m.maneuver.held_out]

@@ -18,6 +18,18 @@ LONGITUDINAL = frozenset({"CX", "CZ", "CD", "CL", "Cm"})
 MOMENTS = frozenset({"Cl", "Cm", "Cn"})
 
 
+def need_models(models: Mapping[str, str]) -> None:
+    """Refuse an identification that is asked for nothing."""
+    if not models:
+        raise refuse(
+            "no_model",
+            where="models",
+            expected="a formula for at least one coefficient",
+            found="none",
+            do='State one, e.g. Cm = "1 + alpha + qhat + de".',
+        )
+
+
 class CoefficientTask:
     """Parameter names and regressor blocks of one coefficient's formula.
 

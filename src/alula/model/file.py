@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field
 
 from alula.base.arrays import Array, frozen
 from alula.base.files import write_whole
-from alula.base.messages import BadInput, refuse
-from alula.base.project_messages import explain, read_toml
+from alula.base.messages import refuse
+from alula.base.project_messages import read_toml, validated
 from alula.model.aero_model import AeroModel, Reference, aero_model
 from alula.model.lookup import LookupTable, lookup_table
 from alula.model.stall import Stall
@@ -81,10 +81,7 @@ def load_model(path: Path | str) -> AeroModel:
     """The model in a file; raises BadInput naming file, key, expected and found."""
     path = Path(path)
     text, tree, _ = read_toml(path)
-    try:
-        file = ModelFile.model_validate(tree)
-    except ValidationError as error:
-        raise BadInput(*explain(error, path, text)) from None
+    file = validated(ModelFile, tree, path, text)
     return aero_model(
         file.name,
         file.models,

@@ -10,11 +10,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
-from pydantic import ValidationError
-
 from alula.aircraft import Aircraft
-from alula.base.messages import BadInput, Message, refuse, warn
-from alula.base.project_messages import explain
+from alula.base.messages import Message, refuse, warn
+from alula.base.project_messages import validated
 from alula.model import AeroModel
 from alula.plan.amplitude import Limits, largest_amplitude, limits_of, outside
 from alula.plan.expected import Method, expected
@@ -87,10 +85,7 @@ class Design:
 
 def planned(tree: Mapping[str, Any]) -> Plan:
     """The plan of a tree of tables; raises BadInput as `load_plan` does."""
-    try:
-        return Plan.model_validate(dict(tree))
-    except ValidationError as error:
-        raise BadInput(*explain(error, Path("plan"))) from None
+    return validated(Plan, tree, Path("plan"))
 
 
 def design(

@@ -20,7 +20,8 @@ from alula.core import core
 from alula.flight import Flight, Maneuver
 from alula.reconstruct.record import Record, channel_on, make_record
 from alula.reconstruct.sensors import KINDS, Sensor, choose_sensors
-from alula.reconstruct.unknowns import COMMON, INERTIAL, WIND, Unknown, choose_unknowns
+from alula.reconstruct.start import first_motion, first_reading, windy_start
+from alula.reconstruct.unknowns import COMMON, INERTIAL, Unknown, choose_unknowns
 
 MOTION = ("h", "u", "v", "w", "phi", "theta", "psi", "north", "east")
 # Noise assumed of an inertial sensor that the project says nothing about, per sample.
@@ -97,7 +98,7 @@ class Problem:
             bare.add_sensor(KINDS[self.sensors[sensor].kind].quantity, arm, 1.0)
             start = np.ascontiguousarray(self.initial[:1, : self.motion])
             return float(core.path_readings(bare, self.records[0].inputs[:1], start)[0, 0])
-        return _first(self.records[0].readings[:, sensor])
+        return first_reading(self.records[0].readings[:, sensor])
 
 
 def make_problem(
@@ -144,7 +145,7 @@ def make_problem(
         )
         records.append(record)
         messages += said
-    free = _windy_start(records[0], sensors, free, spec)
+    free = windy_start(records[0], sensors, free, spec)
     position = aircraft.sensor_position("ax")
     problem = Problem(
         records=tuple(records),
@@ -188,50 +189,6 @@ def _without_drift(
     return tuple(replace(u, free=False) if u.name in held else u for u in unknowns), said
 
 
-def _first(values: Array) -> float:
-    valid = values[np.isfinite(values)]
-    return float(valid[0]) if len(valid) else 0.0
-
-
-def _initial(
-    record: Record, sensors: Sequence[Sensor], motion: int, free: Sequence[Unknown]
-) -> Array:
-    """Motion at the first sample from the first readings, and a generous deviation of each."""
-    first = {}
-    for i, sensor in enumerate(sensors):
-        kind = sensor.kind.removesuffix("_linear")
-        if kind not in first and np.isfinite(record.readings[:, i]).any():
-            first[kind] = (_first(record.readings[:, i]), sensor.sigma)
-    x, sd = np.zeros(motion), np.zeros(motion)
-    for i, name in ((0, "h"), (4, "phi"), (5, "theta"), (6, "psi")):
-        x[i], sigma = first.get(name, (0.0, 100.0 if name == "h" else 0.1))
-        sd[i] = 5.0 * sigma
-    if "psi" not in first:
-        sd[6] = 1.0  # a radian is "unknown" to the filters
-    ground = all(n in first for n in ("v_north", "v_east", "v_down"))
-    windy = any(u.name == "wind_n" for u in free)
-    if ground and (windy or "V" not in first):
-        v_E = np.array([first[n][0] for n in ("v_north", "v_east", "v_down")])
-        x[1:4] = _R_BE(*x[4:7]) @ v_E
-        sd[1:4] = 5.0 * first["v_north"][1] + 5.0 * float(np.linalg.norm(v_E)) * sd[6] / 5.0
-    else:
-        V, sigma = first.get("V", (30.0, 10.0))
-        alpha = first.get("alpha", (x[5], 0.05))
-        beta = first.get("beta", first.get("beta_flank", (0.0, 0.05)))
-        x[1:4] = V * np.array(
-            [np.cos(alpha[0]) * np.cos(beta[0]), np.sin(beta[0]), np.sin(alpha[0])]
-        )
-        sd[1:4] = 5.0 * sigma + V * np.array([0.02, 5.0 * beta[1], 5.0 * alpha[1]])
-        sd[1:4] += 0.05 * V * np.array([0.0, 1.0, 1.0])  # upwash, boom, bias
-        if windy:
-            sd[1:4] += 15.0
-    for i, name in ((7, "north"), (8, "east")):
-        if i < motion:
-            x[i], sigma = first.get(name, (0.0, 100.0))
-            sd[i] = 5.0 * sigma
-    return np.concatenate([x, sd])
-
-
 def _started(
     record: Record,
     sensors: Sequence[Sensor],
@@ -239,49 +196,11 @@ def _started(
     free: Sequence[Unknown],
     spec: ReconstructSpec,
 ) -> Array:
-    """As `_initial`, with the values that the project states."""
-    out = _initial(record, sensors, motion, free)
+    """As `first_motion`, with the values that the project states."""
+    out = first_motion(record, sensors, motion, free)
     for name, entry in spec.initial.get(record.maneuver.id, {}).items():
         out[MOTION.index(name)] = entry.value_si
     return out
-
-
-def _windy_start(
-    record: Record, sensors: Sequence[Sensor], free: tuple[Unknown, ...], spec: ReconstructSpec
-) -> tuple[Unknown, ...]:
-    """Wind by the first readings, where they tell it and the project does not.
-
-    Started from calm air the filters would take the drift for sideslip and angle of attack: their
-    first linearization then learns of sidewash and upwash what no reading ever told.
-    """
-    kinds = [s.kind.removesuffix("_linear") for s in sensors]
-    needed = ("v_north", "v_east", "v_down", "V", "phi", "theta", "psi")
-    if not all(name in kinds for name in needed):
-        return free
-    first = {kind: _first(record.readings[:, kinds.index(kind)]) for kind in kinds}
-    alpha, beta = first.get("alpha", first["theta"]), first.get("beta", 0.0)
-    v_B = first["V"] * np.array(
-        [np.cos(alpha) * np.cos(beta), np.sin(beta), np.sin(alpha) * np.cos(beta)]
-    )
-    v_E = np.array([first[name] for name in needed[:3]])
-    wind = v_E - _R_BE(first["phi"], first["theta"], first["psi"]).T @ v_B
-    guess = dict(zip(WIND, wind.tolist(), strict=True))
-    return tuple(
-        replace(u, value=guess[u.name]) if u.name in WIND and u.name not in spec.unknowns else u
-        for u in free
-    )
-
-
-def _R_BE(phi: float, theta: float, psi: float) -> Array:
-    """Earth to body. ISO 1151; Euler angles 3-2-1."""
-    sp, cp, st, ct, sy, cy = (f(a) for a in (phi, theta, psi) for f in (np.sin, np.cos))
-    return np.array(
-        [
-            [ct * cy, ct * sy, -st],
-            [sp * st * cy - cp * sy, sp * st * sy + cp * cy, sp * ct],
-            [cp * st * cy + sp * sy, cp * st * sy - sp * cy, cp * ct],
-        ]
-    )
 
 
 def _held(flight: Flight, record: Record, given: Sequence[str], motion: int) -> Array | None:

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import base64
-import hashlib
 from collections.abc import Callable
-from importlib.resources import files
 
 from alula.report.budget import left_out, store_for
 from alula.report.figures import FigureStore
 from alula.report.html import Html, css_string, join, tag
 from alula.report.input import ReportInput
+from alula.report.plain_page import packaged, page_head
 from alula.report.sections.coefficients import coefficients
 from alula.report.sections.correlation import correlation
 from alula.report.sections.histories import histories
@@ -35,23 +33,9 @@ def render(report: ReportInput) -> str:
     """
     figures = store_for(report, lambda store: join(c for *_, c in _sections(report, store)))
     sections = _sections(report, figures)
-    style = _text("page.css") + _running_head(report)
-    scripts = [_text(name) for name in _SCRIPTS]
-    policy = (
-        f"default-src 'none'; style-src {_hash(style)}; "
-        f"script-src {' '.join(map(_hash, scripts))}; "
-        "img-src data:; base-uri 'none'; form-action 'none'"
-    )
-    head = tag(
-        "head",
-        tag("meta", charset="utf-8"),
-        tag("meta", http_equiv="Content-Security-Policy", content=policy),
-        tag("meta", name="viewport", content="width=device-width, initial-scale=1"),
-        tag("meta", name="color-scheme", content="light dark"),
-        tag("meta", name="generator", content="Alula"),
-        tag("title", f"{report.name} · Alula report"),
-        Html(f"<style>{style}</style>"),
-    )
+    style = packaged("page.css") + _running_head(report)
+    scripts = [packaged(name) for name in _SCRIPTS]
+    head = page_head(f"{report.name} · Alula report", style, scripts)
     nav = tag(
         "nav",
         tag("p", "Contents", class_="kicker"),
@@ -145,12 +129,3 @@ _HOW_TO = tag(
 def _running_head(report: ReportInput) -> str:
     left, right = css_string(f"Alula report: {report.name}"[:90]), css_string(report.date[:40])
     return f"\n@page{{@top-left{{content:{left}}}@top-right{{content:{right}}}}}\n"
-
-
-def _text(name: str) -> str:
-    return files("alula.report").joinpath(name).read_text(encoding="utf-8")
-
-
-def _hash(content: str) -> str:
-    digest = hashlib.sha256(content.encode()).digest()
-    return f"'sha256-{base64.b64encode(digest).decode()}'"

@@ -1,9 +1,10 @@
-"""The frame of a page without script: nothing from outside, style inside."""
+"""The frame of a page: nothing from outside, style inside; whole where there is no script."""
 
 from __future__ import annotations
 
 import base64
 import hashlib
+from collections.abc import Sequence
 from importlib.resources import files
 
 from alula.report.html import Html, tag
@@ -11,10 +12,17 @@ from alula.report.html import Html, tag
 
 def plain_page(title: str, body: Html, style: str = "") -> str:
     """The whole page as text. style: what it needs besides the reports' own style sheet."""
-    style = files("alula.report").joinpath("page.css").read_text(encoding="utf-8") + style
-    digest = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode()
-    policy = f"default-src 'none'; style-src 'sha256-{digest}'; base-uri 'none'; form-action 'none'"
-    head = tag(
+    head = page_head(title, packaged("page.css") + style)
+    return "<!DOCTYPE html>\n" + tag("html", head, body, lang="en") + "\n"
+
+
+def page_head(title: str, style: str, scripts: Sequence[str] = ()) -> Html:
+    """The head, with a policy that lets in this style and these scripts and nothing else."""
+    policy = f"default-src 'none'; style-src {_hash(style)}; "
+    if scripts:
+        policy += f"script-src {' '.join(map(_hash, scripts))}; img-src data:; "
+    policy += "base-uri 'none'; form-action 'none'"
+    return tag(
         "head",
         tag("meta", charset="utf-8"),
         tag("meta", http_equiv="Content-Security-Policy", content=policy),
@@ -24,4 +32,13 @@ def plain_page(title: str, body: Html, style: str = "") -> str:
         tag("title", title),
         Html(f"<style>{style}</style>"),
     )
-    return "<!DOCTYPE html>\n" + tag("html", head, body, lang="en") + "\n"
+
+
+def packaged(name: str) -> str:
+    """A style sheet or script of this folder."""
+    return files("alula.report").joinpath(name).read_text(encoding="utf-8")
+
+
+def _hash(content: str) -> str:
+    digest = hashlib.sha256(content.encode()).digest()
+    return f"'sha256-{base64.b64encode(digest).decode()}'"

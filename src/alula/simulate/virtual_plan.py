@@ -7,11 +7,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, PrivateAttr, ValidationError, model_validator
+from pydantic import Field, model_validator
 
+from alula.base.file_schema import Identifier, Quantity, ReadFile, Strict
 from alula.base.messages import BadInput
-from alula.base.project import Identifier, Quantity, Strict
-from alula.base.project_messages import check_units, expand, explain, read_toml
+from alula.base.project_messages import check_units, expand_paths, read_toml, validated
 
 Positive = Annotated[float, Field(gt=0.0, le=1e6)]
 NotNegative = Annotated[float, Field(ge=0.0, le=1e6)]
@@ -180,7 +180,7 @@ class TurbulenceSpec(Strict):
     sigma: NotNegative = Field(default=0.0, description="m/s, above 1000 ft")
 
 
-class Plan(Strict):
+class Plan(ReadFile):
     """A plan as it was read; paths are absolute."""
 
     schema_: Literal["alula.plan/1"] = Field(alias="schema")
@@ -211,19 +211,6 @@ class Plan(Strict):
     identify: dict[str, str] = Field(
         default={}, description="formulas for the project; default the model's, with constants"
     )
-
-    _path: Path = PrivateAttr(default=Path())
-    _sha256: str = PrivateAttr(default="")
-
-    @property
-    def path(self) -> Path:
-        """The file that was read."""
-        return self._path
-
-    @property
-    def sha256(self) -> str:
-        """Hexadecimal SHA-256 of the file that was read."""
-        return self._sha256
 
     @model_validator(mode="after")
     def _known_sensors(self) -> Plan:
@@ -258,20 +245,10 @@ def load_plan(path: Path | str) -> Plan:
     """
     path = Path(path)
     text, tree, sha256 = read_toml(path)
-    for key in ("aircraft", "model"):
-        if isinstance(tree.get(key), str):
-            tree[key] = expand(tree[key], path, key)
-    loadings = tree.get("loadings")
-    for i, loading in enumerate(loadings if isinstance(loadings, list) else []):
-        if isinstance(loading, dict) and isinstance(loading.get("aircraft"), str):
-            loading["aircraft"] = expand(loading["aircraft"], path, f"loadings[{i + 1}].aircraft")
-    try:
-        plan = Plan.model_validate(tree)
-    except ValidationError as error:
-        raise BadInput(*explain(error, path, text)) from None
+    expand_paths(tree, path, ("aircraft", "model"), "loadings", ("aircraft",))
+    plan = validated(Plan, tree, path, text)
     problems = check_units(plan, path)
     if problems:
         raise BadInput(*problems)
-    plan._path = path.resolve()
-    plan._sha256 = sha256
+    plan._path, plan._sha256 = path.resolve(), sha256
     return plan

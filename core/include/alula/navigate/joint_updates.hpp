@@ -141,6 +141,19 @@ Innovation<T, 1, 15> of_the_air(const JointFilter<T>& f, const JointNoise<T>& no
   return in;
 }
 
+// An angle of the air velocity v; `angle` gives it and its gradient g from v and u^2 + w^2.
+template <class T, class Angle>
+Judged<T> update_angle(JointFilter<T>& f, const JointNoise<T>& noise, T z, T sigma, Angle angle) {
+  if (!std::isfinite(z) || !std::isfinite(sigma)) return refused(f, Taken::kNotFinite);
+  const Vec3<T> v = air_velocity_at_sensor(f, noise);
+  const T plane = v.x * v.x + v.z * v.z;
+  if (!(plane > noise.least_airspeed * noise.least_airspeed) || !ready_for_air(f, std::sqrt(plane)))
+    return refused(f, Taken::kUnusable);
+  Vec3<T> g;
+  const T e = wrapped(z - angle(v, plane, g));
+  return take(f, noise, of_the_air(f, noise, g, e, sigma), kOfAir);
+}
+
 }  // namespace joint_filter_detail
 
 // Position (m, NED) of the antenna as measured at t_measured; sigma per axis.
@@ -229,29 +242,22 @@ Judged<T> update_airspeed(JointFilter<T>& f, const JointNoise<T>& noise, T z, T 
 // Angle of attack atan2(w, u), rad.
 template <class T>
 Judged<T> update_alpha(JointFilter<T>& f, const JointNoise<T>& noise, T z, T sigma) {
-  using namespace joint_filter_detail;
-  if (!std::isfinite(z) || !std::isfinite(sigma)) return refused(f, Taken::kNotFinite);
-  const Vec3<T> v = air_velocity_at_sensor(f, noise);
-  const T plane = v.x * v.x + v.z * v.z;
-  if (!(plane > noise.least_airspeed * noise.least_airspeed) || !ready_for_air(f, std::sqrt(plane)))
-    return refused(f, Taken::kUnusable);
-  const Vec3<T> g{-v.z / plane, T(0), v.x / plane};
-  return take(f, noise, of_the_air(f, noise, g, wrapped(z - std::atan2(v.z, v.x)), sigma), kOfAir);
+  const auto alpha = [](const Vec3<T>& v, T plane, Vec3<T>& g) {
+    g = {-v.z / plane, T(0), v.x / plane};
+    return std::atan2(v.z, v.x);
+  };
+  return joint_filter_detail::update_angle(f, noise, z, sigma, alpha);
 }
 
 // Sideslip asin(v/V), rad.
 template <class T>
 Judged<T> update_beta(JointFilter<T>& f, const JointNoise<T>& noise, T z, T sigma) {
-  using namespace joint_filter_detail;
-  if (!std::isfinite(z) || !std::isfinite(sigma)) return refused(f, Taken::kNotFinite);
-  const Vec3<T> v = air_velocity_at_sensor(f, noise);
-  const T plane = v.x * v.x + v.z * v.z;
-  if (!(plane > noise.least_airspeed * noise.least_airspeed) || !ready_for_air(f, std::sqrt(plane)))
-    return refused(f, Taken::kUnusable);
-  const T root = std::sqrt(plane), k = T(1) / ((plane + v.y * v.y) * root);
-  const Vec3<T> g{-k * v.x * v.y, k * plane, -k * v.z * v.y};
-  const T e = wrapped(z - std::atan2(v.y, root));
-  return take(f, noise, of_the_air(f, noise, g, e, sigma), kOfAir);
+  const auto beta = [](const Vec3<T>& v, T plane, Vec3<T>& g) {
+    const T root = std::sqrt(plane), k = T(1) / ((plane + v.y * v.y) * root);
+    g = {-k * v.x * v.y, k * plane, -k * v.z * v.y};
+    return std::atan2(v.y, root);
+  };
+  return joint_filter_detail::update_angle(f, noise, z, sigma, beta);
 }
 
 }  // namespace alula

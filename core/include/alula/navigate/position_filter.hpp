@@ -142,10 +142,12 @@ Judged<T> take(PositionFilter<T>& f, const PositionNoise<T>& noise, const Innova
   return out;
 }
 
-// Where the aircraft was when it was measured; kYes where that is known.
+// Where the aircraft was when it was measured; kYes where that is known. numbers: whether the
+// reading is made of them.
 template <class T>
 Taken past(const PositionFilter<T>& f, const PositionNoise<T>& noise, double t_measured,
-           Place3<T>& then) {
+           bool numbers, Place3<T>& then) {
+  if (!std::isfinite(t_measured) || !numbers) return Taken::kNotFinite;
   if (!f.started) return Taken::kUnusable;
   if (t_measured > f.t + static_cast<double>(noise.longest_step)) return Taken::kBackwards;
   return recall(f.history, t_measured, f.t, {f.position, f.velocity}, then) ? Taken::kYes
@@ -159,10 +161,9 @@ Taken past(const PositionFilter<T>& f, const PositionNoise<T>& noise, double t_m
 template <class T>
 Judged<T> update_position(PositionFilter<T>& f, const PositionNoise<T>& noise, double t_measured,
                           const Vec3<T>& z, const Vec3<T>& sigma) {
-  if (!std::isfinite(t_measured) || !finite(z) || !finite(sigma))
-    return {count(f.tally, Taken::kNotFinite), T(0), {}};
   Place3<T> then;
-  const Taken known = position_filter_detail::past(f, noise, t_measured, then);
+  const Taken known =
+      position_filter_detail::past(f, noise, t_measured, finite(z) && finite(sigma), then);
   if (known != Taken::kYes) return {count(f.tally, known), T(0), {}};
   const T age = static_cast<T>(f.t - t_measured),
           e[3] = {z.x - then.position.x, z.y - then.position.y, z.z - then.position.z},
@@ -181,10 +182,9 @@ Judged<T> update_position(PositionFilter<T>& f, const PositionNoise<T>& noise, d
 template <class T>
 Judged<T> update_velocity(PositionFilter<T>& f, const PositionNoise<T>& noise, double t_measured,
                           const Vec3<T>& z, const Vec3<T>& sigma) {
-  if (!std::isfinite(t_measured) || !finite(z) || !finite(sigma))
-    return {count(f.tally, Taken::kNotFinite), T(0), {}};
   Place3<T> then;
-  const Taken known = position_filter_detail::past(f, noise, t_measured, then);
+  const Taken known =
+      position_filter_detail::past(f, noise, t_measured, finite(z) && finite(sigma), then);
   if (known != Taken::kYes) return {count(f.tally, known), T(0), {}};
   const T e[3] = {z.x - then.velocity.x, z.y - then.velocity.y, z.z - then.velocity.z};
   const T s[3] = {sigma.x, sigma.y, sigma.z};
@@ -201,10 +201,9 @@ Judged<T> update_velocity(PositionFilter<T>& f, const PositionNoise<T>& noise, d
 template <class T>
 Judged<T> update_height(PositionFilter<T>& f, const PositionNoise<T>& noise, double t_measured, T z,
                         T sigma) {
-  if (!std::isfinite(t_measured) || !std::isfinite(z) || !std::isfinite(sigma))
-    return {count(f.tally, Taken::kNotFinite), T(0), {}};
   Place3<T> then;
-  const Taken known = position_filter_detail::past(f, noise, t_measured, then);
+  const Taken known = position_filter_detail::past(f, noise, t_measured,
+                                                   std::isfinite(z) && std::isfinite(sigma), then);
   if (known != Taken::kYes) return {count(f.tally, known), T(0), {}};
   Innovation<T, 1, 2> in{{2, 5}};
   in.e[0] = -z - then.position.z;

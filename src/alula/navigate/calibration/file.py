@@ -12,12 +12,12 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import Field, ValidationError
+from pydantic import Field
 
 from alula.base.arrays import Array, frozen
-from alula.base.messages import BadInput, Message, note, refuse
-from alula.base.project import Strict
-from alula.base.project_messages import explain, read_toml
+from alula.base.file_schema import Strict
+from alula.base.messages import Message, note, refuse
+from alula.base.project_messages import read_toml, validated
 from alula.flight import Channel, Flight
 from alula.navigate.calibration.calibrate import Calibrated
 from alula.navigate.calibration.channels import channel_lines
@@ -142,10 +142,7 @@ def load_imu_calibration(path: Path | str) -> ImuCalibration:
     """Read a calibration file; raises BadInput naming file, key, expected and found."""
     path = Path(path)
     text, tree, _ = read_toml(path)
-    try:
-        file = CalibrationFile.model_validate(tree)
-    except ValidationError as error:
-        raise BadInput(*explain(error, path, text)) from None
+    file = validated(CalibrationFile, tree, path, text)
     sensors = {}
     for name in CHANNELS:
         table: SensorTable | None = getattr(file, name)

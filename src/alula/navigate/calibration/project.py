@@ -5,11 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import Field, PrivateAttr, ValidationError, model_validator
+from pydantic import Field, model_validator
 
-from alula.base.messages import BadInput, Message
-from alula.base.project import LogSpec, Source, Strict
-from alula.base.project_messages import check_units, expand, explain, read_toml
+from alula.base.file_schema import ReadFile, Strict
+from alula.base.messages import BadInput
+from alula.base.project import LogSpec, Source
+from alula.base.project_messages import check_units, expand_paths, read_toml, validated
+from alula.base.project_references import duplicate_ids, unknown_log
 
 Vector = Annotated[list[float], Field(min_length=3, max_length=3)]
 Three = Annotated[list[Source], Field(min_length=3, max_length=3)]
@@ -116,7 +118,7 @@ class StillSpec(RecordingSpec):
     sensor: SensorName
 
 
-class CalibrationProject(Strict):
+class CalibrationProject(ReadFile):
     """A calibration project as it was read; paths are absolute."""
 
     schema_: Literal["alula.calibration/1"] = Field(alias="schema")
@@ -126,19 +128,6 @@ class CalibrationProject(Strict):
     gyro: GyroSpec | None = None
     magnetometer: MagnetometerSpec | None = None
     still: list[StillSpec] = Field(default_factory=list)
-
-    _path: Path = PrivateAttr(default=Path())
-    _sha256: str = PrivateAttr(default="")
-
-    @property
-    def path(self) -> Path:
-        """The file that was read."""
-        return self._path
-
-    @property
-    def sha256(self) -> str:
-        """Hexadecimal SHA-256 of the file that was read."""
-        return self._sha256
 
     @model_validator(mode="after")
     def _something(self) -> CalibrationProject:
@@ -151,28 +140,13 @@ def load_calibration_project(path: Path | str) -> CalibrationProject:
     """Read and check a calibration project; raises BadInput with all that is wrong."""
     path = Path(path)
     text, tree, digest = read_toml(path)
-    logs = tree.get("logs")
-    for i, log in enumerate(logs if isinstance(logs, list) else []):
-        if isinstance(log, dict) and isinstance(log.get("path"), str):
-            log["path"] = expand(log["path"], path, f"logs[{i + 1}].path")
-    try:
-        project = CalibrationProject.model_validate(tree)
-    except ValidationError as error:
-        raise BadInput(*explain(error, path, text)) from None
+    expand_paths(tree, path, (), "logs", ("path",))
+    project = validated(CalibrationProject, tree, path, text)
     known = [log.id for log in project.logs]
     problems = check_units(project, path)
     for where, spec in _vectors(project):
-        if spec.log not in known:
-            expected = f"one of {', '.join(known)}"
-            problems.append(
-                Message("unknown_log", "error", f"{path}: {where}.log", expected,
-                        f"'{spec.log}'", "Name a log of this project.")
-            )  # fmt: skip
-    for id in sorted({id for id in known if known.count(id) > 1}):
-        problems.append(
-            Message("duplicate_id", "error", f"{path}: logs", "each id once",
-                    f"'{id}' {known.count(id)} times", "Rename.")
-        )  # fmt: skip
+        problems += unknown_log(path, f"{where}.log", spec.log, known)
+    problems += duplicate_ids(path, "logs", known)
     if problems:
         raise BadInput(*problems)
     project._path, project._sha256 = path.resolve(), digest
