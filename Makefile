@@ -54,7 +54,7 @@ lint: $(STAMP)
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
-	$(BIN)/clang-format --dry-run -Werror $(CPP)
+	@$(BIN)/clang-format --dry-run -Werror $(CPP)
 
 # C++ tests of the core, GoogleTest from the system. Where it is missing they are skipped and say
 # so; with ALULA_REQUIRE_DATA set that is a failure.
