@@ -17,8 +17,8 @@ HEADS = ("Source", "From", "Observed", "Stated σ, °", "Against", "rms, °", "B
          "Monitor")  # fmt: skip
 Z = ("z: difference over the root of both stated variances, 1 where these are right. Not "
      "observable: a stated σ above 2.5°, or the method says so.")  # fmt: skip
-KEY = ("Blue: the source, ± 2 σ. Gray: the vote. Shaded: not observable. Dashed: taken out by the "
-       "monitor.")  # fmt: skip
+KEY = ("Blue: the source, band ± 2 σ. Gray line: the vote. Gray ground: not observable. Dashed: "
+       "taken out by the monitor.")  # fmt: skip
 
 
 def angles_section(compared: Mapping[Kind, Compared]) -> Html:
