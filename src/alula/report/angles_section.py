@@ -49,7 +49,7 @@ def _of(kind: Kind, found: Compared) -> Html:
     return join(
         [
             tag("h3", TITLES[kind]),
-            table(caption, HEADS, rows, numeric=[2, 3, 5, 6, 7], class_="dense whole"),
+            table(caption, HEADS, rows, numeric=[2, 3, 5, 6, 7], class_="dense whole sources"),
             tag("p", Z, class_="note"),
             *(angle_picture(found, name, axes) for name in drawn),
             tag("p", KEY, class_="note") if drawn else "",
