@@ -222,10 +222,28 @@ def test_constant_channel(tmp_path: Path) -> None:
     assert "51.5 in all 400 samples" in message.found
 
 
+def test_a_sensor_that_sticks_is_said(tmp_path: Path) -> None:
+    noise = np.random.default_rng(1).normal(0.0, 0.1, len(TABLE))
+    V = 50.0 + noise
+    V[150:] = V[150]  # 5 s of 8
+    flight = read_flight(edited(tmp_path, V=V))
+    (message,) = [m for m in flight.messages if m.code == "stuck_channel"]
+    assert message.level == "warning"
+    assert "from 3 to 7.98 s" in message.found
+    assert "channel V" in message.where
+    for quiet in (50.0 + noise, np.round(50.0 + noise, 1), np.maximum(V - V[150], 0.0)):
+        # moving; coarse; an airspeed at its least value on the ground
+        assert "stuck_channel" not in codes(read_flight(edited(tmp_path, V=quiet)))
+
+
 def implausible(path: Path, **channels: tuple[str, str]) -> str:
     error = refused(path, {**NAMED, **channels})
     assert set(codes(error)) == {"unit_implausible"}
     return " ".join(f"{m.found} {m.do}" for m in error.messages)
+
+
+def test_accelerations_taken_for_g(tmp_path: Path) -> None:
+    assert "write unit = 'm/s2'" in implausible(edited(tmp_path), az=("az", "g"))
 
 
 def test_accelerations_in_g(tmp_path: Path) -> None:

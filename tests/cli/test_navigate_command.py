@@ -95,3 +95,44 @@ def test_bad_input(flown: Path) -> None:
     ran = navigated(flown, "--filter", "pair", "--json", "-")
     assert ran.code == 2
     assert ran.messages("missing_field")
+
+
+def without(flown: Path, *channels: str) -> Path:
+    """The project with channels not mapped."""
+    lines = (flown / "campaign.toml").read_text().splitlines()
+    kept = [line for line in lines if not line.startswith(tuple(f"{c} = {{from" for c in channels))]
+    assert len(kept) == len(lines) - len(channels)
+    project = flown / f"without_{'_'.join(channels)}.toml"
+    project.write_text("\n".join(kept))
+    return project
+
+
+def test_without_satellites_it_says_what_to_doubt(flown: Path) -> None:
+    ran = alula("navigate", without(flown, "v_north", "v_east", "v_down"), "--json", "-")
+    (said,) = ran.messages("no_satellites")
+    assert said["level"] == "warning"
+    assert "v_north" in said["expected"]
+
+
+def test_an_airspeed_that_is_never_usable_is_no_success(flown: Path) -> None:
+    text = (flown / "campaign.toml").read_text()
+    row = next(line for line in text.splitlines() if line.startswith("V = {from"))
+    project = flown / "slow.toml"
+    project.write_text(text.replace(row, 'V = {constant = 0.0, unit = "m/s"}'))
+    ran = alula("navigate", project, "--json", "-")
+    assert ran.code == 1, ran.err
+    (said,) = ran.messages("sensor_not_usable")
+    assert "V" in said["where"]
+
+
+def test_only_the_logs_asked_for_are_in_the_report(flown: Path, tmp_path: Path) -> None:
+    text = (flown / "campaign.toml").read_text()
+    block = text[text.index("[[logs]]") :].split("\n\n")[0]
+    id = block.split('id = "')[1].split('"')[0]
+    project = flown / "two.toml"
+    other = block.replace(f'id = "{id}"', 'id = "second_log"')
+    project.write_text(text.replace(block, f"{block}\n\n{other}", 1))
+    page = tmp_path / "page.html"
+    for words, there in (((), True), (("--log", id), False)):
+        assert alula("navigate", project, *words, "--report", page).code == 0
+        assert ("second_log" in page.read_text()) is there

@@ -212,3 +212,13 @@ def test_flight_in_turbulence() -> None:
 
     got, holds = navigation_flight(True)
     assert holds, got
+
+
+def test_ten_readings_a_second_are_no_row_of_holes() -> None:
+    t = 0.1 * np.arange(601)  # whose differences are 0.1 but for the last bits, above and below
+    still = Inertial(t, np.zeros((601, 3)), np.tile([0.0, 0.0, -9.80665], (601, 1)))
+    assert np.diff(t).max() > 0.1
+    assert not navigate_joint(still, [], SETTINGS).inertial.get("gap")
+    kept = np.delete(np.arange(601), np.arange(300, 310))
+    holed = Inertial(t[kept], still.rate[kept], still.force[kept])
+    assert navigate_joint(holed, [], SETTINGS).inertial["gap"] == 1

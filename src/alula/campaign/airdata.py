@@ -61,8 +61,9 @@ class AirDataJob:
 
     def summary(self) -> str:
         """As text."""
-        lines = []
+        lines: list[str] = []
         for id in self.logs:
+            lines += [""] if lines else []
             if id in self.calibrated:
                 one = self.calibrated[id]
                 lines.append(f"Log {id}: reading = (1 + k) truth + b\n{one.summary()}")

@@ -29,8 +29,9 @@ from alula.report import ReportInput
 
 ROWS = 20_000  # of the result, at most, for each log
 _ARMS = ("V", "v_north")  # whose sensors' positions matter
-CONTRADICTIONS = ("sensor_refused", "implausible_wind")
+CONTRADICTIONS = ("sensor_refused", "sensor_not_usable", "implausible_wind")
 MOST_WIND = 0.8  # of the airspeed: an airplane that hardly makes way over ground
+INERTIAL = {"not_finite": "not numbers", "backwards": "back in time", "gap": "after a hole"}
 LEAST_TAKEN = 0.5  # of a sensor's readings; below it sensor and filter contradict each other
 
 
@@ -52,8 +53,15 @@ class NavigationJob:
         return any(m.code in CONTRADICTIONS for m in self.messages)
 
     def all_messages(self) -> tuple[Message, ...]:
-        """The messages of every stage, each once."""
-        return tuple(dict.fromkeys([*self.checked.all_messages(), *self.messages]))
+        """The messages of every stage, each once; not those of logs that were left out."""
+        left_out = {
+            m
+            for name, flight in self.checked.flights.items()
+            if name not in self.found
+            for m in flight.messages
+        }
+        read = [m for m in self.checked.all_messages() if m not in left_out]
+        return tuple(dict.fromkeys([*read, *self.messages]))
 
 
 def run_navigation(
@@ -129,6 +137,16 @@ def navigate_flight(
             )
         )
         readings = [r for r in readings if r.kind != "field"]
+    if not kinds & {"velocity", "position"}:
+        said.append(
+            warn(
+                "no_satellites",
+                where=f"log {flight.id}",
+                expected="v_north, v_east, v_down, or north, east, down, or lat, lon, h_gps",
+                found="none; only the air data can tell gravity from acceleration",
+                do="Map them in [channels]; without them doubt the attitude and the wind.",
+            )
+        )
     if kind == "joint" and "V" in kinds and "beta" not in kinds:
         readings.append(assumed_sideslip(samples.inertial))
         said.append(
@@ -191,8 +209,9 @@ def _difference(flight: Flight, found: Navigation) -> dict[str, float]:
 
 
 def _refusals(log: str, found: Navigation) -> list[Message]:
-    """A sensor whose readings are refused for the most part; samples that were no numbers."""
+    """A sensor whose readings are for the most part not taken; samples that were no numbers."""
     out = []
+    idle = []
     for sensor in found.takings:
         gated, taken = sensor.counts.get("gated", 0), sensor.counts.get("taken", 0)
         if gated + taken and taken < LEAST_TAKEN * (gated + taken):
@@ -205,6 +224,18 @@ def _refusals(log: str, found: Navigation) -> list[Message]:
                     do="Check its sign, unit, delay_s and stated sigma.",
                 )
             )
+        if taken + gated < LEAST_TAKEN * sensor.counts.get("unusable", 0):
+            idle.append(sensor.kind)
+    if idle:
+        out.append(
+            warn(
+                "sensor_not_usable",
+                where=f"log {log}, {', '.join(idle)}",
+                expected="readings above the least airspeed, attitude and velocity roughly known",
+                found="most readings not taken, because one of these was not so",
+                do="Check unit and zero of V; map satellites' velocity or position, and a heading.",
+            )
+        )
     wind, speed = float(np.linalg.norm(found.steady[-1])), float(np.median(found.air()[:, 0]))
     if wind > MOST_WIND * speed and speed > 10.0:
         out.append(
@@ -216,15 +247,15 @@ def _refusals(log: str, found: Navigation) -> list[Message]:
                 do="Check the signs and units of v_north, v_east, psi and V.",
             )
         )
-    for what in ("not_finite", "backwards", "gap"):
+    for what, words in INERTIAL.items():
         if found.inertial.get(what):
             out.append(
                 warn(
                     f"inertial_{what}",
                     where=f"log {log}, inertial samples",
                     expected="finite samples, one after another, without holes",
-                    found=f"{found.inertial[what]} {what.replace('_', ' ')}",
-                    do="Nothing: refused, or the hole bridged with growing variances.",
+                    found=f"{found.inertial[what]} {words}",
+                    do="Nothing has to be done: refused, or bridged with growing variances.",
                 )
             )
     return out
@@ -239,7 +270,7 @@ def report_of_navigation(done: NavigationJob, date: str, seed: int | None) -> Re
         name=project.name,
         path=str(project.path),
         date=date,
-        cards=done.checked.cards,
+        cards=tuple(card for card in done.checked.cards if card.log in done.found),
         maneuvers=(),
         navigation=done.found,
         messages=done.all_messages(),

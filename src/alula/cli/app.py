@@ -83,6 +83,9 @@ def _options(
     """
 
 
+INTERRUPTED = 130  # by Ctrl-C, as shells count it
+
+
 @cache
 def _group() -> Callable[..., Any]:
     """The commands with their options, which `app()` would read from the functions at each call."""
@@ -94,6 +97,8 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
     words = list(sys.argv[1:] if arguments is None else arguments)
     try:
         code = _group()(words, prog_name="alula", standalone_mode=False) or 0
+        if code == INTERRUPTED:
+            typer.echo("interrupted; no file was left half written", err=True)
     except _UsageError as error:
         if not words:  # what it carries is the help
             typer.echo(str(error), err=True)

@@ -16,10 +16,7 @@ from alula.base.arrays import Array
 from alula.base.messages import BadInput, Message, warn
 from alula.base.project import ChannelSpec, LogSpec
 from alula.flight import Channel
-
-# Channels that rest for a whole log without anything being wrong.
-MAY_REST = ("df", "gear", "mass", "Ixx", "Iyy", "Izz", "Ixz", "stabilizer", "x_cg", "y_cg", "z_cg")
-MAY_REST_ENDS = ("_trim", "_left", "_right")
+from alula.logs.still import resting
 
 
 @dataclass(frozen=True)
@@ -87,6 +84,13 @@ def _vertical(x: Array) -> Doubt | None:
             expected,
             f"{value:.3g}: it looks like ft/s2",
             "If so, write unit = 'ft/s2'" + (" and sign = -1." if value > 0 else "."),
+        )
+    if 60.0 < abs(value) < 150.0:
+        return Doubt(
+            "unit_implausible",
+            expected,
+            f"{value:.3g}: it looks like m/s2 taken for g",
+            "If so, write unit = 'm/s2'" + (" and sign = -1." if value > 0 else "."),
         )
     if abs(value) < 0.3:
         return Doubt(
@@ -172,7 +176,7 @@ def check(
                 problems.append(
                     Message(doubt.code, "error", where, doubt.expected, doubt.found, do)
                 )
-        messages += _resting(name, where, values) + _held(where, channel)
+        messages += resting(name, where, channel)
     problems += _times(log, specs, channels)
     for angle, rate in (("phi", "p"), ("theta", "q")):
         if angle in channels and rate in channels:
@@ -194,39 +198,6 @@ def doubt_of(name: str, unit: str, values: Array) -> Doubt | None:
     if rule is None and base in ("de", "da", "dr", "df") and unit == "rad":
         rule = _CONTROL
     return rule(values) if rule and len(values) else None
-
-
-def _resting(name: str, where: str, values: Array) -> list[Message]:
-    if len(values) < 2 or np.ptp(values) > 0 or name in MAY_REST or name.endswith(MAY_REST_ENDS):
-        return []
-    return [
-        warn(
-            "constant_channel",
-            where=where,
-            expected="values that change in flight",
-            found=f"{values[0]:.6g} in all {len(values)} samples",
-            do="The sensor may be dead; do not use it, or write constant = ... if it is one.",
-        )
-    ]
-
-
-def _held(where: str, channel: Channel) -> list[Message]:
-    """A slower sensor written at the log's rate: every value stands the same number of times."""
-    changes = np.flatnonzero(np.diff(channel.values)) + 1  # NaN counts as a change
-    if not 20 <= len(changes) <= 0.6 * len(channel.values):
-        return []
-    low, middle, high = np.quantile(np.diff(changes), (0.05, 0.5, 0.95))
-    if middle < 2 or high > 1.2 * low:
-        return []
-    return [
-        warn(
-            "held_values",
-            where=where,
-            expected="a new value in each sample",
-            found=f"a new value every {middle:g} samples, held between",
-            do="Write repeats = 'drop' for it, or each value counts as often as it is repeated.",
-        )
-    ]
 
 
 def _times(

@@ -112,7 +112,7 @@ def first_state(
                 where="navigation, start",
                 expected="a magnetic field or a course over ground in the first second",
                 found="neither",
-                do="Nothing, if the flight turns: the heading is found when it speeds up.",
+                do="If the flight turns, nothing: the heading is found when it speeds up.",
             )
         )
     wind = np.zeros(3)

@@ -15,6 +15,8 @@ from alula.report.html import Html, tag
 
 ANGLES_STYLE = """
 .angle{display:block;max-width:100%;height:auto;margin:2px 0}
+.sources td:nth-child(2){min-width:170px}
+@media (max-width:900px){.angle text{font-size:16px}}
 .angle .frame{fill:var(--plot-paper);stroke:var(--plot-axis)}
 .angle .off{fill:var(--soft)}
 .angle .grid{stroke:var(--plot-grid)}

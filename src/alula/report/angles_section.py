@@ -17,8 +17,8 @@ HEADS = ("Source", "From", "Observed", "Stated σ, °", "Against", "rms, °", "B
          "Monitor")  # fmt: skip
 Z = ("z: difference over the root of both stated variances, 1 where these are right. Not "
      "observable: a stated σ above 2.5°, or the method says so.")  # fmt: skip
-KEY = ("Blue: the source, ± 2 σ. Gray: the vote. Shaded: not observable. Dashed: taken out by the "
-       "monitor.")  # fmt: skip
+KEY = ("Blue: the source, band ± 2 σ. Gray line: the vote. Gray ground: not observable. Dashed: "
+       "taken out by the monitor.")  # fmt: skip
 
 
 def angles_section(compared: Mapping[Kind, Compared]) -> Html:
@@ -49,7 +49,7 @@ def _of(kind: Kind, found: Compared) -> Html:
     return join(
         [
             tag("h3", TITLES[kind]),
-            table(caption, HEADS, rows, numeric=[2, 3, 5, 6, 7], class_="dense whole"),
+            table(caption, HEADS, rows, numeric=[2, 3, 5, 6, 7], class_="dense whole sources"),
             tag("p", Z, class_="note"),
             *(angle_picture(found, name, axes) for name in drawn),
             tag("p", KEY, class_="note") if drawn else "",

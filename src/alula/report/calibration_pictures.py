@@ -13,6 +13,7 @@ from alula.report.html import Html, join, tag
 from alula.report.numbers import compact
 
 STYLE = (
+    ".calibration{max-width:100%;height:auto}"
     ".calibration .axis{stroke:var(--axis);fill:none}"
     ".calibration .before{fill:var(--plot-residual);fill-opacity:.45}"
     ".calibration .after{fill:var(--plot-model);fill-opacity:.45}"
@@ -36,7 +37,9 @@ def clouds(sensor: SensorCalibration) -> Html:
     radius = factor * float(np.max(sensor.length))
     reach = 1.08 * max(float(np.nanmax(np.abs(np.vstack([before, after])))), radius)
     panels = [
-        _panel(k, before[:, [i, j]], after[:, [i, j]], radius, reach, f"{'xyz'[i]}, {'xyz'[j]}")
+        _panel(
+            k, before[:, [i, j]], after[:, [i, j]], radius, reach, unit, f"{'xyz'[i]}, {'xyz'[j]}"
+        )
         for k, (i, j) in enumerate(((0, 1), (0, 2), (1, 2)))
     ]
     label = (
@@ -45,7 +48,9 @@ def clouds(sensor: SensorCalibration) -> Html:
     return _svg(3 * SIDE, SIDE + 24, label, *panels)
 
 
-def _panel(k: int, before: Array, after: Array, radius: float, reach: float, title: str) -> Html:
+def _panel(
+    k: int, before: Array, after: Array, radius: float, reach: float, unit: str, title: str
+) -> Html:
     middle, half = (k + 0.5) * SIDE, SIDE / 2 - PAD / 2
     scale = half / reach
 
@@ -81,7 +86,7 @@ def _panel(k: int, before: Array, after: Array, radius: float, reach: float, tit
             "circle", cx=f"{middle:.1f}", cy=f"{SIDE / 2:.1f}", r=f"{scale * radius:.1f}",
             class_="true",
         ),
-        _words(middle, SIDE + 12, f"{title}; edge at {compact(reach, 3)}", "middle"),
+        _words(middle, SIDE + 12, f"{title}; edge at {compact(reach, 3)} {unit}", "middle"),
     )  # fmt: skip
 
 
