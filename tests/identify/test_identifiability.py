@@ -122,6 +122,22 @@ def test_reference_scale_makes_a_small_parameter_ok():
     assert by_option["Cm_beta"].verdict == "ok"
 
 
+def test_variance_inflation_is_one_or_more_with_a_common_constant():
+    """Against the textbook's, over two maneuvers at different angles of attack, as one record."""
+    first, second = maneuver("first"), maneuver("second", seed=1)
+    shifted = dict(second.variables) | {"alpha": second.variables["alpha"] + 0.1}
+    second = replace(second, variables=shifted)
+    v = {n: np.concatenate([first.variables[n], shifted[n]]) for n in ("alpha", "qhat", "de")}
+    x = np.column_stack([np.ones(2 * N), v["qhat"], v["de"]])
+    left = v["alpha"] - x @ np.linalg.lstsq(x, v["alpha"], rcond=None)[0]
+    expected = np.sum((v["alpha"] - v["alpha"].mean()) ** 2) / np.sum(left**2)
+    found = identify(
+        "1 + alpha + qhat + de", first, second, common_constant=True, weighting="equal"
+    )
+    assert expected > 1.0
+    assert found["Cm_alpha"].vif == pytest.approx(expected, rel=1e-8)
+
+
 def test_variance_inflation_is_one_over_one_minus_r2():
     """Against its textbook definition by an auxiliary regression."""
     v = maneuver().variables

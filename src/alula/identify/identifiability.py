@@ -73,16 +73,25 @@ def unresolved(
 
 
 def variance_inflation(fit: Regression) -> Array:
-    """(k,) variance of each parameter over what it were if its regressor stood alone.
+    """(k,) variance of each parameter over what it were if its regressor stood alone: 1 or more.
 
-    Regressors count without their mean over each maneuver, except those that are constant.
+    Alone but for the constants: what a regressor has in common with those that do not move within
+    a maneuver (the intercept, shared or each maneuver's own) does not count. These stand alone.
     """
-    alone = np.zeros(len(fit.names))
+    moving = np.zeros(len(fit.names))  # sum of squares about each maneuver's mean
+    full = np.zeros(len(fit.names))
+    means, samples = [], []
     for weight, block in zip(fit.weights, fit.blocks, strict=True):
-        centered = block.regressors - block.regressors.mean(axis=0)
-        size = np.sum(centered**2, axis=0)
-        full = np.sum(block.regressors**2, axis=0)
-        alone += weight * np.where(size > 1e-20 * full, size, full)
+        mean = block.regressors.mean(axis=0)
+        moving += weight * np.sum((block.regressors - mean) ** 2, axis=0)
+        full += weight * np.sum(block.regressors**2, axis=0)
+        means.append(mean)
+        samples.append(weight * len(block.regressors))
+    constant = moving <= 1e-20 * full
+    level = np.sqrt(samples)[:, None] * np.array(means)
+    common = level[:, constant]
+    apart = level - common @ np.linalg.lstsq(common, level, rcond=None)[0]
+    alone = np.where(constant, full, moving + np.sum(apart**2, axis=0))
     out: Array = np.diag(fit.solution.dispersion) * alone
     return out
 
