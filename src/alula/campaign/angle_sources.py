@@ -27,6 +27,7 @@ LEFT = 0.1 * DEG  # of a calibrated one, at least
 OMITTED = 0.1 * DEG  # what the formula of a lift leaves out, at least
 CALM = 0.2  # m/s of turbulence for ASSE where the project states none
 LAG, LEAST = 0.1, 20  # s between the printed scheme's equations; airspeeds that it needs
+SETTLED, FIRST = 1.2, 1.0  # the joint filter: times its usual standard deviation; s
 SATELLITES = (("v_north", "v_east"), ("north", "east"), ("lat", "lon"))
 OTHER_AIRCRAFT = 0.01  # relative difference of S, b or c that makes a model another aircraft's
 Found = dict[Kind, AngleSource]
@@ -163,9 +164,12 @@ def joint_sources(board: Board) -> tuple[Found, list[Message]]:
     out: Found = {}
     for k, kind in enumerate(("alpha", "beta")):
         sigma = np.sqrt(np.maximum(covariance[:, 1 + k, 1 + k], 0.0))
+        # before it has found itself, each reading moves it by steps
+        settled = (sigma <= SETTLED * np.nanmedian(sigma)) & (found.t - found.t[0] >= FIRST)
         out[kind] = angle_source(  # type: ignore[index]
             board.t, _pick(board, found.t, angles[k]), _pick(board, found.t, sigma),
             "satellites, IMU and airspeed, without vanes, sideslip near zero",
+            observable=_pick(board, found.t, settled.astype(float)) == 1.0,
         )  # fmt: skip
     return out, [*said, *found.messages]
 
