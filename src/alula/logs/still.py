@@ -47,7 +47,7 @@ def _stuck(name: str, where: str, channel: Channel) -> list[Message]:
         return []
     changes = np.flatnonzero(np.diff(values) != 0.0) + 1  # NaN counts as a change
     if len(changes) < 20:
-        return []  # a coarse step or a constant, of which `_resting` tells
+        return []  # a coarse step or a constant, of which `_constant` tells
     first, last = np.append(0, changes), np.append(changes, len(values)) - 1
     lasted = t[last] - t[first]
     if name == "V":
