@@ -79,6 +79,14 @@ def test_scale_error_of_the_airspeed_is_taken_out(calm) -> None:
     assert again == pytest.approx(plain, abs=1e-9, nan_ok=True)  # rounding of two divisions
 
 
+def test_joint_filter_has_no_vote_before_it_has_found_itself(calm) -> None:
+    _, log, calibration = calm
+    found = angles(log, calibration).compared["alpha"]
+    reported = found.sources["joint filter"].reported
+    assert not reported[found.t - found.t[0] < 1.0].any()
+    assert reported[found.t - found.t[0] > 60.0].mean() > 0.5
+
+
 def test_vane_that_sticks_is_named(calm) -> None:
     _, log, calibration = calm
     stuck = changed(log, "alpha", lambda t, x: np.where(t < 60.0, x, x[t < 60.0][-1]))

@@ -222,3 +222,5 @@ def test_ten_readings_a_second_are_no_row_of_holes() -> None:
     kept = np.delete(np.arange(601), np.arange(300, 310))
     holed = Inertial(t[kept], still.rate[kept], still.force[kept])
     assert navigate_joint(holed, [], SETTINGS).inertial["gap"] == 1
+    assert not navigate_pair(still, []).inertial.get("gap")
+    assert navigate_pair(holed, []).inertial["gap"] == 1

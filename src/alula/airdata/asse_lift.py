@@ -42,8 +42,8 @@ def lift_angle(
     """Angles of attack (n,), rad, at which the model's CL (or -CZ) is the measured one.
 
     mass: kg, or (n,); f: (n, 3) specific force at the center of gravity, m/s2; V: (n,) m/s; rho:
-    (n,) kg/m3; variables: the model's other
-    variables by name (n,), `qhat`, `de` and so on. engine_force: (n, 3) N, body axes, if known.
+    (n,) kg/m3; variables: the model's other variables by name (n,), `qhat`, `de` and so on.
+    engine_force: (n, 3) N, body axes, if known.
     NaN outside the range of alpha that the model is valid in, and where nothing solves it: an
     attached-flow model says nothing of a stall. Raises BadInput where the model has no lift.
     """

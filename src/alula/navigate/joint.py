@@ -111,13 +111,18 @@ def _before(t: float, inertial: Inertial) -> float:
     """A start at the first sample lies just before it, so that this is the first step."""
     if t < float(inertial.t[0]):
         return t
-    steps = np.diff(inertial.t[np.isfinite(inertial.t)][:100])
-    steps = steps[steps > 0.0]
-    return t - (float(np.median(steps)) if len(steps) else 1e-3)
+    usual = _usual_step(inertial)
+    return t - (1e-3 if usual is None else usual)
 
 
 def longest_step(inertial: Inertial) -> float:
     """Time between samples, s, beyond which there is a hole: 0.1; 0.15 for samples at 10 Hz."""
+    usual = _usual_step(inertial)
+    return 0.1 if usual is None else min(max(0.1, 1.5 * usual), 0.2)
+
+
+def _usual_step(inertial: Inertial) -> float | None:
+    """Median time between samples, s; None where none goes on."""
     steps = np.diff(inertial.t[np.isfinite(inertial.t)])
     steps = steps[steps > 0.0]
-    return min(max(0.1, 1.5 * float(np.median(steps))), 0.2) if len(steps) else 0.1
+    return float(np.median(steps)) if len(steps) else None

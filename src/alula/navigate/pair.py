@@ -10,7 +10,7 @@ import numpy as np
 from alula.base.arrays import frozen
 from alula.base.messages import Message
 from alula.core import core
-from alula.navigate.joint import _before, _row
+from alula.navigate.joint import _before, _row, longest_step
 from alula.navigate.result import (
     PAIR_STATES,
     Navigation,
@@ -65,6 +65,7 @@ def navigate_pair(
         setattr(attitude, name, getattr(settings, name))
     for name in ("accelerometer", "accelerometer_walk", "gravity"):
         setattr(position, name, getattr(settings, name))
+    attitude.longest_step = position.longest_step = longest_step(inertial)
     sigma = np.array(
         [start.sigma_tilt, start.sigma_heading, start.sigma_velocity, start.sigma_position,
          start.sigma_gyro_bias,
