@@ -11,10 +11,8 @@ one) to 14.5 % on APC's geometry and 13.9 to 22 % on UIUC's. The row is no blind
 
 from __future__ import annotations
 
-import os
 import re
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 
@@ -31,8 +29,8 @@ from alula.predict.propeller_blade_element import _polars
 from alula.predict.propeller_curves import core_shape
 from alula.predict.propeller_fit import PropellerFit, fit_propeller
 from alula.predict.propeller_test import PropellerTest, propeller_test
+from verification.flight_data import DATA
 
-DATA = Path(os.environ.get("ALULA_DATA", Path(__file__).parents[3] / "shared" / "data"))
 FOLDER = DATA / "propellers" / "apc_10x7sf"
 J_FITTED = 0.9
 MOST_RMS, MOST_CT = 0.09, 0.12

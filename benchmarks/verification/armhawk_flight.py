@@ -7,9 +7,6 @@ is off by tens of degrees at times, so no attitude is used. From 90 to 150 s it 
 
 from __future__ import annotations
 
-import os
-from pathlib import Path
-
 import h5py
 import numpy as np
 from scipy.io import loadmat
@@ -20,6 +17,7 @@ from alula.airdata.inflight_result import InFlightCalibration
 from alula.base.arrays import Array
 from alula.base.local_cubic import LocalCubic
 from alula.simulate import flow_angles
+from verification.flight_data import DATA
 
 AIRBORNE = (35.0, 432.0)  # s
 RATE, FLYING = 10.0, 10.0  # Hz; m/s, slower it is on the ground
@@ -29,7 +27,7 @@ APART = 3.0  # standard errors that the halves may differ by
 
 def recorded() -> tuple[Array, Array]:
     """The state (n, 16) and the probe's t, u, v, w (m, 4)."""
-    folder = Path(os.environ.get("ALULA_DATA", "/data")) / "armhawk" / "flight"
+    folder = DATA / "armhawk" / "flight"
     with h5py.File(folder / "state.mat", "r") as file:
         state = np.array(file["state"], dtype=np.float64)
     state = state if state.shape[1] == 16 else state.T

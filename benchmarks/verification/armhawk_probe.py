@@ -7,14 +7,12 @@ of the fitted probe.
 
 from __future__ import annotations
 
-import os
-from pathlib import Path
-
 import numpy as np
 
 from alula.airdata.cp_fit import CpFit, fit_cp, harmonic_cp, read_points
 from alula.airdata.probe import FiveHoleProbe
 from alula.airdata.probe_table import probe_table
+from verification.flight_data import DATA
 
 PORT = np.radians(45.0)
 RMS, ANGLE, MOST = 0.007, 1e-6, 8
@@ -22,7 +20,7 @@ RMS, ANGLE, MOST = 0.007, 1e-6, 8
 
 def cfd() -> CpFit:
     """The fit to the author's points."""
-    folder = Path(os.environ.get("ALULA_DATA", "/data")) / "armhawk" / "probe_cfd"
+    folder = DATA / "armhawk" / "probe_cfd"
     points = read_points(folder / "cp_over_theta.csv", (1, 2))
     return fit_cp(np.radians(points[:, 0]) + PORT, points[:, 1])
 

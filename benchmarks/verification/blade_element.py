@@ -8,7 +8,6 @@ beside it. QPROP uses another form of the wake (Drela's induced velocity and tip
 from __future__ import annotations
 
 import json
-import os
 from pathlib import Path
 from typing import Any
 
@@ -18,8 +17,8 @@ from alula.aircraft.blades import Blades
 from alula.aircraft.load_blades import load_blades
 from alula.aircraft.propeller_files import read_qprop
 from alula.predict.propeller_blade_element import blade_element_loads
+from verification.flight_data import DATA
 
-DATA = Path(os.environ.get("ALULA_DATA", Path(__file__).parents[3] / "shared" / "data"))
 RPM, DENSITY = 2100.0, 1.225
 TOLERANCE, QPROP_TOLERANCE = 1e-5, 0.03
 

@@ -9,7 +9,6 @@ process noise's intensity; output error, which knows of no turbulence, stands be
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,6 +21,7 @@ from alula.identify.least_squares import least_squares
 from alula.identify.linear_model import LinearModel, linear_model, process_covariance, sample
 from alula.identify.linear_output_error import identify_linear_output_error
 from alula.identify.linear_record import LinearRecord, linear_record
+from verification.flight_data import DATA
 
 OUTPUTS = ("pdot", "rdot", "ay", "p", "r")
 INPUTS = ("da", "dr", "v")
@@ -131,8 +131,7 @@ def monte_carlo(found: dict[str, Array], seeds: Sequence[int], method: str) -> D
 
 def f(quick: bool) -> tuple[str, bool]:
     """The row 'DHC-2, columns 12 to 19'. quick: 10 draws instead of 100."""
-    root = Path(os.environ.get("ALULA_DATA", Path(__file__).parents[3] / "shared" / "data"))
-    path = root / "dhc2" / "y13aus_da1.asc"
+    path = DATA / "dhc2" / "y13aus_da1.asc"
     if not path.exists():
         return f"flight data not found: {path.name}", False
     found = channels(path)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -13,6 +12,7 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "predict"))
 from lattice_shapes import reference_case
 
 from alula.predict.vortex_lattice import vortex_lattice
+from verification.flight_data import DATA
 
 UNIT = 1e-6  # of the last printed digit; trailing zeros are not printed
 # The reference's names, in Alula's: its elevator is positive as de is.
@@ -41,8 +41,7 @@ def units_apart(found: float, printed: float) -> int:
 
 def check(quick: bool = False) -> tuple[str, bool]:
     """What was found in words, and whether every value is within one unit in the last digit."""
-    data = Path(os.environ.get("ALULA_DATA", Path(__file__).parents[3] / "shared" / "data"))
-    rows = list(compared(data / "references" / "vortex_lattice.json"))
+    rows = list(compared(DATA / "references" / "vortex_lattice.json"))
     off = [(label, name, f, p) for label, name, f, p in rows if units_apart(f, p) > 1]
     exact = sum(units_apart(f, p) == 0 for _, _, f, p in rows)
     words = f"{len(rows)} values, {exact} to the last digit, {len(off)} off by more than one unit"

@@ -13,11 +13,11 @@ from pathlib import Path
 
 import numpy as np
 
+from verification.flight_data import DATA
 from verification.harv import harv_reconstruction
 from verification.published import ATTAS_BIASES, TWIN_OTTER
 from verification.registry import row
 from verification.run import (
-    DATA,
     ROOT,
     command,
     constants,

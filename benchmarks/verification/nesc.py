@@ -18,6 +18,7 @@ from alula.base.arrays import Array
 from alula.model import AeroModel, Reference, aero_model, lookup_table
 from alula.simulate import Airframe, SimulatedFlight, fly, initial_state
 from alula.simulate.fly import attitudes
+from verification.flight_data import DATA
 
 FT, SLUG = 0.3048, 14.593902937206364  # m, kg
 SLUG_FT2 = SLUG * FT**2
@@ -201,15 +202,13 @@ def apart(
 
 def check(quick: bool = False) -> tuple[str, bool]:
     """All cases: what was found in words, and whether each is inside its tolerance."""
-    from verification.run import DATA as root
-
     holds, words = True, []
     for number, case in CASES.items():
-        ours = flown(root, number, 0.01 if quick else 0.002)
+        ours = flown(DATA, number, 0.01 if quick else 0.002)
         unit = "ft" if case.quantity == "altitude" else "deg"
         for sim in (*case.against, *case.shown):
             own = " (against the air)" if number == 3 and sim == "06" else ""
-            off = apart(root, number, sim, ours, own)[case.quantity]
+            off = apart(DATA, number, sim, ours, own)[case.quantity]
             judged = sim in case.against
             holds &= off <= case.tolerance or not judged
             words.append(
@@ -217,6 +216,6 @@ def check(quick: bool = False) -> tuple[str, bool]:
                 + (f" (may be {case.tolerance:g})" if judged else " (shown)")
             )
         if number == 3:
-            off = apart(root, 3, "04", ours, " (against the air)")["pitch"]
+            off = apart(DATA, 3, "04", ours, " (against the air)")["pitch"]
             words.append(f"case 3 with the damping of rates against the air: {off:.2g} deg from 04")
     return "; ".join(words), holds

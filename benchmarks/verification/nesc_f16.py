@@ -28,6 +28,7 @@ from alula.model import AeroModel
 from alula.simulate import Airframe, fly, initial_state
 from alula.simulate.airframe import core_model
 from alula.simulate.fly import attitudes
+from verification.flight_data import DATA
 
 SIMS = ("02", "04")
 CG_PERCENT = 25.0  # sim 02's moment about 35 % is its force times a tenth of the chord
@@ -161,8 +162,6 @@ def beside(
 
 def nesc_f16(quick: bool) -> tuple[str, bool]:
     """The row 'NESC 11': trim and forces as recorded, 20 s inside the spread of sims 02 and 04."""
-    from verification.run import DATA
-
     data = DATA / "nesc_6dof"
     plane, recorded = f16(data / "models"), sims(data / "Atmos_11_TrimCheckSubsonicF16")
     worst, words = {}, []

@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).parents[2]
-DATA = Path(os.environ.setdefault("ALULA_DATA", str(ROOT.parent / "shared" / "data")))
 
 
 def command(*arguments: str | Path) -> tuple[int, dict[str, Any]]:

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import itertools
 import json
-import os
-from pathlib import Path
 
 import numpy as np
 
 from alula.aircraft.geometry import Body, CrossSection
 from alula.base.arrays import frozen
 from alula.predict.slender_body import slender_body
+from verification.flight_data import DATA
 
 LENGTH, DIAMETER, S, C = 6.0, 1.1, 10.6, 1.25  # m, m, m2, m: as the reference states them
 
@@ -31,8 +30,7 @@ def ellipsoid(n: int, cosine: bool) -> Body:
 
 def reference() -> float:
     """Cm_alpha of the reference, 1/rad."""
-    folder = Path(os.environ.get("ALULA_DATA", Path(__file__).parents[3] / "shared" / "data"))
-    path = folder / "references" / "vortex_lattice.json"
+    path = DATA / "references" / "vortex_lattice.json"
     return float(json.loads(path.read_text())["slender_body"]["Cm_alpha"])
 
 

@@ -7,7 +7,6 @@ there and which are collinear with the true terms. Standard errors are those of 
 
 from __future__ import annotations
 
-import os
 from itertools import combinations_with_replacement
 from pathlib import Path
 
@@ -19,8 +18,8 @@ from alula.identify.orthogonal_functions import orthogonal_functions, physical_v
 from alula.identify.regression import Block, regress
 from alula.identify.stepwise import stepwise
 from alula.identify.structure import Pool, Structure
+from verification.flight_data import DATA
 
-DATA = Path(os.environ.get("ALULA_DATA", Path(__file__).parents[3] / "shared" / "data"))
 TRUE = {"x1": -1.0, "x2": 2.0, "x4": 3.0}
 CONSTANT = -0.5
 METHODS = {"stepwise": stepwise, "orthogonal functions": orthogonal_functions}

@@ -26,6 +26,7 @@ from alula.flight import Maneuver
 from alula.identify import Identification, Reference
 from alula.identify.measured_maneuver import MeasuredManeuver
 from alula.identify.output_error import identify_output_error
+from verification.flight_data import DATA
 
 # Value and standard error.
 PUBLISHED = {
@@ -137,6 +138,4 @@ def twin_otter_output_error(recording: Path) -> tuple[str, bool]:
 
 def f(quick: bool) -> tuple[str, bool]:
     """The row."""
-    from verification.run import DATA
-
     return twin_otter_output_error(DATA / "twin_otter" / "totter_lon_020213f1_018.mat")

@@ -25,8 +25,7 @@ PROJECTS = [
 
 
 @pytest.mark.parametrize("path", PROJECTS, ids=lambda p: p.stem)
-def test_real_projects_load(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("ALULA_DATA", str(ROOT))
+def test_real_projects_load(path: Path) -> None:
     project = load_project(path)
     assert project.aircraft is not None
     aircraft = load_aircraft(project.aircraft)

@@ -63,10 +63,9 @@ def test_readme_prediction_is_what_compare_prints() -> None:
                 assert old == new
 
 
-def test_real_projects_named_in_the_readme_load(monkeypatch) -> None:
+def test_real_projects_named_in_the_readme_load() -> None:
     from alula.base.project import load_project
 
-    monkeypatch.setenv("ALULA_DATA", "/data")
     named = re.findall(r"examples/real/\w+\.toml", (ROOT / "README.md").read_text())
     assert named
     for path in named:

@@ -218,9 +218,9 @@ def test_a_log_is_not_overwritten(bench: Path) -> None:
     assert log.read_bytes() == before
 
 
-def test_armhawk(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_armhawk() -> None:
     """The real bench: what the author published, by another method."""
-    monkeypatch.setenv("ALULA_DATA", str(data("armhawk").parent))
+    data("armhawk")
     found = calibrate(EXAMPLE).sensors
     acc, mag = found["accelerometer"], found["magnetometer"]
     assert acc.after.largest < 0.0030

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import pytest
-
 from alula.aircraft import load_aircraft
 from alula.base.project import load_project
 from alula.logs.maneuvers import maneuvers
 from alula.logs.reader import read_all
 from alula.reconstruct import Reconstruction, reconstruct
-from data import ROOT, data
+from data import data
 
 EXAMPLES = Path(__file__).parents[2] / "examples" / "real"
 
@@ -19,9 +17,7 @@ EXAMPLES = Path(__file__).parents[2] / "examples" / "real"
 def reconstructed(name: str, *methods: str) -> dict[str, Reconstruction]:
     """The project `name`, whose data are in the folder of that name, by each of the methods."""
     data(name)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("ALULA_DATA", str(ROOT))
-        project = load_project(EXAMPLES / f"{name}.toml")
+    project = load_project(EXAMPLES / f"{name}.toml")
     flights = read_all(project)
     planned, _ = maneuvers(project, flights)
     aircraft = load_aircraft(project.aircraft)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.io import loadmat
 
-from data import ROOT, data
+from data import data
 from verification.harv import harv_reconstruction
 
 FT = 0.3048
@@ -13,9 +13,7 @@ FT = 0.3048
 @pytest.fixture(scope="module")
 def solved():
     recording = data("harv", "compat_lon_example.mat")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("ALULA_DATA", str(ROOT))
-        return harv_reconstruction(recording)
+    return harv_reconstruction(recording)
 
 
 @pytest.fixture(scope="module")

@@ -12,11 +12,6 @@ from data import data
 REAL = Path(__file__).parents[2] / "examples" / "real"
 
 
-@pytest.fixture(autouse=True)
-def environment(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("ALULA_DATA", str(data()))
-
-
 def test_attas_closes_with_its_own_forces_and_moments() -> None:
     """No longitudinal model at all: thrust, mass, inertia and recorded coefficients alone.
 
