@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from alula.base.arrays import Array
-from alula.identify.output_error import identify_output_error
+from alula.identify.flown.output_error import identify_output_error
 from alula.identify.result import Identification
 from alula.simulate import SimulatedFlight
 from alula.simulate.inputs import Steps

@@ -12,10 +12,10 @@ from __future__ import annotations
 import numpy as np
 
 from alula.base.arrays import Array
-from alula.identify.principal_components import principal_components
-from alula.identify.regression import Block, regress
-from alula.identify.ridge import ridge
-from alula.identify.shrinkage import bias_matrix
+from alula.identify.regression.principal_components import principal_components
+from alula.identify.regression.regress import Block, regress
+from alula.identify.regression.ridge import ridge
+from alula.identify.regression.shrinkage import bias_matrix
 
 SEEDS = 2000
 N, NOISE, K = 200, 0.5, 0.02

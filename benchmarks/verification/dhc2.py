@@ -16,11 +16,11 @@ from pathlib import Path
 import numpy as np
 
 from alula.base.arrays import Array
-from alula.identify.filter_error import identify_filter_error
-from alula.identify.least_squares import least_squares
-from alula.identify.linear_model import LinearModel, linear_model, process_covariance, sample
-from alula.identify.linear_output_error import identify_linear_output_error
-from alula.identify.linear_record import LinearRecord, linear_record
+from alula.identify.linear.filter_error import identify_filter_error
+from alula.identify.linear.model import LinearModel, linear_model, process_covariance, sample
+from alula.identify.linear.output_error import identify_linear_output_error
+from alula.identify.linear.record import LinearRecord, linear_record
+from alula.identify.regression.least_squares import least_squares
 from verification.flight_data import DATA
 
 OUTPUTS = ("pdot", "rdot", "ay", "p", "r")

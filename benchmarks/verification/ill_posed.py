@@ -15,8 +15,8 @@ from math import erfc, sqrt
 import numpy as np
 
 from alula.base.messages import BadInput
-from alula.identify.measured_maneuver import MeasuredManeuver
-from alula.identify.output_error import identify_output_error
+from alula.identify.flown.measured_maneuver import MeasuredManeuver
+from alula.identify.flown.output_error import identify_output_error
 from alula.simulate.inputs import Signal, Steps, Sum
 from verification.noisy_flights import LATERAL, LONGITUDINAL, flown, measured, sportstar
 

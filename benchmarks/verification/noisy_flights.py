@@ -15,7 +15,7 @@ from scipy.signal import lfilter
 from alula.aircraft import load_aircraft
 from alula.base.arrays import Array
 from alula.flight import Maneuver
-from alula.identify.measured_maneuver import MeasuredManeuver
+from alula.identify.flown.measured_maneuver import MeasuredManeuver
 from alula.model import AeroModel, load_model
 from alula.plan.expected import without_noise
 from alula.simulate import Airframe, Condition, SimulatedFlight, airframe_of, fly, trim

@@ -19,9 +19,9 @@ import numpy as np
 import cases
 from alula.flight import Maneuver
 from alula.identify import Reference
-from alula.identify.measured_maneuver import STATES, MeasuredManeuver
-from alula.identify.output_error_fit import OutputErrorFit, fit_output_error
-from alula.identify.output_error_problem import Setting
+from alula.identify.flown.fit import OutputErrorFit, fit_output_error
+from alula.identify.flown.measured_maneuver import STATES, MeasuredManeuver
+from alula.identify.flown.problem import Setting
 from alula.model import AeroModel, aero_model
 from alula.model import Reference as ModelReference
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from alula.identify.output_error_problem import STATE_SETS
+from alula.identify.flown.problem import STATE_SETS
 from alula.plan.output_error_information import predict_output_error
 from verification.campaign_coverage import CASES, flights, output_error
 from verification.noisy_flights import SIGMA, measured, sportstar

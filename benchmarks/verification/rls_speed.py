@@ -12,7 +12,10 @@ import time
 import numpy as np
 
 from alula.core import ISA
-from alula.identify.recursive import Forgetting, recursive_least_squares
+from alula.identify.equation_error.recursive_least_squares import (
+    Forgetting,
+    recursive_least_squares,
+)
 
 PARAMETERS, MUST = 8, 1e-6  # s a sample
 KINDS = {

@@ -12,8 +12,8 @@ import numpy as np
 
 from alula.flight import Maneuver
 from alula.identify import CoefficientData
+from alula.identify.flown.stall import identify_stall
 from alula.identify.result import Identification
-from alula.identify.stall import identify_stall
 from alula.simulate.inputs import Steps, Sum
 from verification.noisy_flights import Aircraft, flown, sportstar
 

@@ -14,10 +14,10 @@ import numpy as np
 from scipy.io import loadmat
 
 from alula.base.arrays import Array
-from alula.identify.orthogonal_functions import orthogonal_functions, physical_values
-from alula.identify.regression import Block, regress
-from alula.identify.stepwise import stepwise
-from alula.identify.structure import Pool, Structure
+from alula.identify.regression.orthogonal_functions import orthogonal_functions, physical_values
+from alula.identify.regression.regress import Block, regress
+from alula.identify.regression.stepwise import stepwise
+from alula.identify.regression.structure import Pool, Structure
 from verification.flight_data import DATA
 
 TRUE = {"x1": -1.0, "x2": 2.0, "x4": 3.0}

@@ -24,8 +24,8 @@ import numpy as np
 
 from alula.flight import Maneuver
 from alula.identify import Identification, Reference
-from alula.identify.measured_maneuver import MeasuredManeuver
-from alula.identify.output_error import identify_output_error
+from alula.identify.flown.measured_maneuver import MeasuredManeuver
+from alula.identify.flown.output_error import identify_output_error
 from verification.flight_data import DATA
 
 # Value and standard error.

@@ -13,7 +13,7 @@ import numpy as np
 
 from alula.aircraft import Actuator
 from alula.base.arrays import Array
-from alula.identify.output_error import identify_output_error
+from alula.identify.flown.output_error import identify_output_error
 from alula.identify.result import Identification
 from alula.simulate import Condition, SimulatedFlight, linearize, trim
 from alula.simulate.airframe import core_model

@@ -10,10 +10,10 @@ import pytest
 
 from alula.campaign.check import check_project
 from alula.campaign.measured import measured_maneuvers
-from alula.identify.carried import carried
-from alula.identify.output_error import identify_output_error
-from alula.identify.output_error_fit import Covariance
-from alula.identify.output_error_problem import STATE_SETS, Setting
+from alula.identify.flown.carried import carried
+from alula.identify.flown.fit import Covariance
+from alula.identify.flown.output_error import identify_output_error
+from alula.identify.flown.problem import STATE_SETS, Setting
 from alula.reconstruct import reconstruct
 from cli.command import demo_files, small_project
 

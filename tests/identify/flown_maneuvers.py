@@ -13,7 +13,7 @@ import numpy as np
 
 from alula.flight import Maneuver
 from alula.identify import Reference
-from alula.identify.measured_maneuver import MeasuredManeuver
+from alula.identify.flown.measured_maneuver import MeasuredManeuver
 
 S, SPAN, CHORD, MASS, RHO, G = 11.85, 9.0, 1.21, 600.0, 1.112, 9.80665
 INERTIA = np.array([[1200.0, 0.0, -90.0], [0.0, 1100.0, 0.0], [-90.0, 0.0, 2100.0]])

@@ -10,8 +10,8 @@ from scipy.linalg import toeplitz
 
 from alula.base.messages import BadInput
 from alula.identify import identify_equation_error
-from alula.identify.bootstrap import block_bootstrap, block_length, bootstrapped
-from alula.identify.regression import Block, regress
+from alula.identify.equation_error.bootstrap import block_bootstrap, block_length, bootstrapped
+from alula.identify.regression.regress import Block, regress
 
 N, DT = 1000, 0.02
 

@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from alula.base.messages import BadInput
-from alula.identify.candidates import candidates
+from alula.identify.regression.candidates import candidates
 
 
 @pytest.mark.parametrize(

@@ -6,9 +6,9 @@ from identify_flights import short_period
 from scipy import signal
 
 from alula.base.coloured import coloured_covariance
-from alula.identify.least_squares import least_squares
-from alula.identify.regression import Block, regress
-from alula.identify.verdict import assess
+from alula.identify.regression.least_squares import least_squares
+from alula.identify.regression.regress import Block, regress
+from alula.identify.trust.verdict import assess
 
 
 def autoregressive(rng: np.random.Generator, n: int, dt: float, tau: float) -> np.ndarray:

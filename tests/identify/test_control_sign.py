@@ -9,9 +9,9 @@ import pytest
 from identify_flights import maneuver
 
 from alula.identify import identify_equation_error
-from alula.identify.bootstrap import bootstrapped
-from alula.identify.frequency_regression import identify_frequency_regression
-from alula.identify.recursive_equation_error import identify_recursive
+from alula.identify.equation_error.bootstrap import bootstrapped
+from alula.identify.equation_error.recursive import identify_recursive
+from alula.identify.frequency.regression import identify_frequency_regression
 
 MODEL = {"Cm": "1 + alpha + qhat + de"}
 

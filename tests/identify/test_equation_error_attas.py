@@ -4,7 +4,7 @@ import pytest
 from identify_flights import attas, attas_motion, window
 
 from alula.identify import identify_equation_error
-from alula.identify.state_space import identify_state_space
+from alula.identify.equation_error.state_space import identify_state_space
 
 MODELS = {
     "CL": "1 + alpha",

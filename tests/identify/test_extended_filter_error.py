@@ -10,16 +10,16 @@ import pytest
 from alula.base.messages import BadInput
 from alula.flight import Maneuver
 from alula.identify import Reference
-from alula.identify.extended_filter_error import (
+from alula.identify.flown.extended_filter_error import (
     ExtendedFilter,
     FunctionModel,
     identify_extended_filter_error,
 )
-from alula.identify.filter_error import identify_filter_error
-from alula.identify.flight_filter_error import STATES_OF, identify_flight_filter_error
-from alula.identify.linear_model import linear_model, sample
-from alula.identify.linear_record import Unknowns, linear_record
-from alula.identify.measured_maneuver import STATES, MeasuredManeuver
+from alula.identify.flown.filter_error import STATES_OF, identify_flight_filter_error
+from alula.identify.flown.measured_maneuver import STATES, MeasuredManeuver
+from alula.identify.linear.filter_error import identify_filter_error
+from alula.identify.linear.model import linear_model, sample
+from alula.identify.linear.record import Unknowns, linear_record
 
 DT = 0.04
 

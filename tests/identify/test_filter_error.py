@@ -9,11 +9,11 @@ import pytest
 from scipy.linalg import solve_discrete_are
 
 from alula.base.messages import BadInput
-from alula.identify.filter_error import FilterError, identify_filter_error
-from alula.identify.innovations import InnovationLikelihood
-from alula.identify.linear_model import linear_model
-from alula.identify.linear_record import Unknowns, linear_record
-from alula.identify.riccati import steady_covariance
+from alula.identify.likelihood.innovations import InnovationLikelihood
+from alula.identify.likelihood.riccati import steady_covariance
+from alula.identify.linear.filter_error import FilterError, identify_filter_error
+from alula.identify.linear.model import linear_model
+from alula.identify.linear.record import Unknowns, linear_record
 from data import data
 from verification import dhc2
 

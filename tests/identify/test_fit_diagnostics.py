@@ -6,10 +6,10 @@ from identify_flights import maneuver, short_period
 from scipy import signal
 
 from alula.identify import identify_equation_error
-from alula.identify.feedback import feedback
-from alula.identify.lack_of_fit import lack_of_fit
-from alula.identify.regression import Block, regress
-from alula.identify.residual_tests import input_correlations, ljung_box
+from alula.identify.regression.lack_of_fit import lack_of_fit
+from alula.identify.regression.regress import Block, regress
+from alula.identify.regression.residual_tests import input_correlations, ljung_box
+from alula.identify.trust.feedback import feedback
 
 MODEL = {"Cm": "1 + alpha + qhat + de"}
 

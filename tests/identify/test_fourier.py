@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from alula.base.messages import BadInput
-from alula.identify.fourier import detrended, fourier_integral, harmonics
+from alula.identify.frequency.fourier import detrended, fourier_integral, harmonics
 
 
 def closed_form(a, w, T):

@@ -10,9 +10,9 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from alula.base.messages import BadInput
-from alula.identify.frequency_output_error import FrequencyError, identify_frequency_output_error
-from alula.identify.linear_model import linear_model
-from alula.identify.linear_record import Unknowns, linear_record
+from alula.identify.frequency.output_error import FrequencyError, identify_frequency_output_error
+from alula.identify.linear.model import linear_model
+from alula.identify.linear.record import Unknowns, linear_record
 
 TRUE = {"Za": -1.2, "Zde": -0.15, "Ma": -6.0, "Mq": -1.8, "Mde": -9.0}
 DELAY, DT = 0.07, 0.02

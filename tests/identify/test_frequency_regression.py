@@ -11,8 +11,8 @@ from scipy.signal import lfilter
 
 from alula.base.messages import BadInput
 from alula.identify import identify_equation_error
-from alula.identify.frequency_regression import identify_frequency_regression
-from alula.identify.sandwich import sandwich
+from alula.identify.frequency.regression import identify_frequency_regression
+from alula.identify.regression.sandwich import sandwich
 
 MODEL = {"Cm": "1 + alpha + qhat + de"}
 TRUE = {"Cm_alpha": -1.2, "Cm_q": -20.0, "Cm_de": -1.5}

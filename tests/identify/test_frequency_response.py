@@ -7,7 +7,7 @@ import pytest
 from scipy import signal
 
 from alula.base.messages import BadInput
-from alula.identify.frequency_response import frequency_responses, multisine_responses
+from alula.identify.frequency.response import frequency_responses, multisine_responses
 
 DT, N = 0.02, 6000
 NUM, DEN = [3.0, 6.0], [1.0, 1.6, 9.0]  # 3 (s + 2) / (s^2 + 1.6 s + 9)

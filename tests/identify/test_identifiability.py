@@ -8,7 +8,7 @@ from identify_flights import DT, N, maneuver
 
 from alula.base.local_cubic import LocalCubic
 from alula.identify import identify_equation_error
-from alula.identify.verdict import verdict
+from alula.identify.trust.verdict import verdict
 
 
 def identify(formula, *data, **options):

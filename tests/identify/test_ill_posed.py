@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from alula.identify.saturation import saturated
+from alula.identify.flown.saturation import saturated
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 

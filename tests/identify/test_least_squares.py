@@ -5,8 +5,8 @@ import pytest
 from scipy.io import loadmat
 
 from alula.base.messages import BadInput
-from alula.identify.least_squares import least_squares
-from alula.identify.regression import Block, regress
+from alula.identify.regression.least_squares import least_squares
+from alula.identify.regression.regress import Block, regress
 from data import data
 
 

@@ -8,9 +8,9 @@ import pytest
 from alula.base.messages import BadInput
 from alula.flight import Maneuver
 from alula.identify import Reference
-from alula.identify.flight_filter_error import _record, flight_functions
-from alula.identify.linear_flight import SteadyFlight, linear_flight_model
-from alula.identify.measured_maneuver import STATES, MeasuredManeuver
+from alula.identify.flown.filter_error import _record, flight_functions
+from alula.identify.flown.measured_maneuver import STATES, MeasuredManeuver
+from alula.identify.linear.flight import SteadyFlight, linear_flight_model
 
 G, V, M, RHO, S, B, C = 9.80665, 55.0, 1100.0, 1.1, 16.0, 11.0, 1.5
 INERTIA = np.array([[1500.0, 0.0, -150.0], [0.0, 1900.0, 0.0], [-150.0, 0.0, 3000.0]])

@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import solve_continuous_lyapunov
 
 from alula.base.messages import BadInput
-from alula.identify.linear_model import (
+from alula.identify.linear.model import (
     linear_model,
     process_covariance,
     sample,

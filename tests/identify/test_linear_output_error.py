@@ -9,14 +9,14 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from alula.base.messages import BadInput
-from alula.identify.likelihood import Prior
-from alula.identify.linear_model import linear_model
-from alula.identify.linear_output_error import (
+from alula.identify.likelihood.parameters import Prior
+from alula.identify.linear.model import linear_model
+from alula.identify.linear.output_error import (
     OutputError,
     identify_linear_output_error,
     simulate,
 )
-from alula.identify.linear_record import Unknowns, linear_record
+from alula.identify.linear.record import Unknowns, linear_record
 from data import data
 
 TRUE = {"Lp": -5.8, "Lda": -16.0, "L0": 0.05, "Np": -0.6, "Nr": -0.7, "Ndr": -2.8}

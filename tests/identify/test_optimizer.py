@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from alula.identify.optimizer import Point, _within, minimize, with_prior
+from alula.identify.likelihood.optimizer import Point, _within, minimize, with_prior
 
 
 def rosenbrock(p, derivatives):

@@ -9,8 +9,8 @@ import pytest
 
 from alula.base.messages import BadInput
 from alula.identify import identified_model
-from alula.identify.likelihood import Prior
-from alula.identify.output_error import identify_output_error
+from alula.identify.flown.output_error import identify_output_error
+from alula.identify.likelihood.parameters import Prior
 from alula.model import Reference
 from identify.flown_maneuvers import (
     CHORD,

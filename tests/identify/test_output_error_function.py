@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from alula.base.messages import BadInput
-from alula.identify.output_error_function import FunctionManeuver, identify_output_error_function
+from alula.identify.flown.python_model import FunctionManeuver, identify_output_error_function
 
 TRUTH = {"a": -1.5, "b": 4.0}
 

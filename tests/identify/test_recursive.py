@@ -7,13 +7,13 @@ from scipy import signal
 
 from alula.base.messages import BadInput
 from alula.identify import identify_equation_error
-from alula.identify.recursive import (
+from alula.identify.equation_error.recursive import identify_recursive
+from alula.identify.equation_error.recursive_least_squares import (
     Forgetting,
     recursive_least_squares,
     sample_weights,
 )
-from alula.identify.recursive_equation_error import identify_recursive
-from alula.identify.recursive_fourier import recursive_frequency_regression
+from alula.identify.frequency.recursive_fourier import recursive_frequency_regression
 
 MODELS = {"CZ": "1 + alpha + qhat + de", "Cm": "1 + alpha + qhat + de"}
 

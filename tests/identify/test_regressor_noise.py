@@ -5,8 +5,8 @@ import pytest
 from identify_flights import short_period, twin_otter
 
 from alula.identify import identify_equation_error
-from alula.identify.regression import Block, regress
-from alula.identify.regressor_noise import noise_bias
+from alula.identify.regression.regress import Block, regress
+from alula.identify.regression.regressor_noise import noise_bias
 
 
 def noisy(seed: int, sigma: float) -> Block:

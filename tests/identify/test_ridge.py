@@ -5,11 +5,11 @@ import pytest
 from scipy import optimize
 
 from alula.base.messages import BadInput
-from alula.identify.principal_components import principal_components
-from alula.identify.regression import Block, regress
-from alula.identify.ridge import ridge
-from alula.identify.shrinkage import bias_matrix
-from alula.identify.verdict import assess
+from alula.identify.regression.principal_components import principal_components
+from alula.identify.regression.regress import Block, regress
+from alula.identify.regression.ridge import ridge
+from alula.identify.regression.shrinkage import bias_matrix
+from alula.identify.trust.verdict import assess
 from verification.collinear import FREE, NAMES, NOISE, TRUTH, K, check, closed_form, design
 
 

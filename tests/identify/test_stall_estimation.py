@@ -11,7 +11,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from alula.base.messages import BadInput
-from alula.identify.stall import identify_stall, separation
+from alula.identify.flown.stall import identify_stall, separation
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 

@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 from alula.base.local_cubic import LocalCubic
 from alula.base.messages import BadInput
 from alula.flight import Maneuver, Motion
-from alula.identify.state_space import identify_state_space, state_derivatives
+from alula.identify.equation_error.state_space import identify_state_space, state_derivatives
 
 G = 9.80665
 

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from alula.identify.likelihood import Fitted
-from alula.identify.stillness import still
+from alula.identify.likelihood.parameters import Fitted
+from alula.identify.likelihood.stillness import still
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 

@@ -9,14 +9,14 @@ from scipy import signal
 
 from alula.base.messages import BadInput
 from alula.identify import identify_equation_error
-from alula.identify.orthogonal_functions import (
+from alula.identify.equation_error.choice import RegressionChoice, regression_choice
+from alula.identify.regression.orthogonal_functions import (
     gram_schmidt,
     orthogonal_functions,
     physical_values,
 )
-from alula.identify.regression_choice import RegressionChoice, regression_choice
-from alula.identify.stepwise import partial_f, stepwise
-from alula.identify.structure import Pool, orthonormal, press
+from alula.identify.regression.stepwise import partial_f, stepwise
+from alula.identify.regression.structure import Pool, orthonormal, press
 from data import data
 from verification import structure
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from alula.base.messages import BadInput
-from alula.identify.output_error_problem import STATE_SETS
+from alula.identify.flown.problem import STATE_SETS
 from alula.plan.output_error_information import predict_output_error
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))

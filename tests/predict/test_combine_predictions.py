@@ -10,7 +10,7 @@ import pytest
 
 from alula.aircraft import load_aircraft
 from alula.base.messages import BadInput
-from alula.identify.likelihood import Prior
+from alula.identify.likelihood.parameters import Prior
 from alula.model import Reference, load_model, save_model
 from alula.predict.axes import along, turn
 from alula.predict.combine import FLOOR, added, as_flown, combine

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from alula.identify.likelihood import Prior
-from alula.identify.output_error import identify_output_error
+from alula.identify.flown.output_error import identify_output_error
+from alula.identify.likelihood.parameters import Prior
 from alula.model import Reference
 from alula.predict.combine import combine
 from alula.predict.flow import Flow

@@ -10,13 +10,13 @@ from alula.base.messages import refuse
 from alula.campaign.identify_task import IdentifyTask
 from alula.campaign.options import bad_option, factors, one_of, priors_of
 from alula.identify import Identification
-from alula.identify.carried import carried
-from alula.identify.measured_maneuver import MeasuredManeuver
+from alula.identify.equation_error.task import LONGITUDINAL
+from alula.identify.flown.carried import carried
+from alula.identify.flown.measured_maneuver import MeasuredManeuver
+from alula.identify.flown.output_error import identify_output_error
+from alula.identify.flown.problem import STATE_SETS, Setting
+from alula.identify.flown.usual_outputs import USUAL_OUTPUTS
 from alula.identify.merge import merged
-from alula.identify.output_error import identify_output_error
-from alula.identify.output_error_problem import STATE_SETS, Setting
-from alula.identify.task import LONGITUDINAL
-from alula.identify.usual_outputs import USUAL_OUTPUTS
 
 LATERAL_OUTPUTS = frozenset({"beta", "p", "r", "phi", "ay", "pdot", "rdot"})
 

@@ -21,8 +21,8 @@ from alula.campaign.sources.convert import convert
 from alula.flight import Maneuver, SourceFile
 from alula.identify import CoefficientData, Series
 from alula.identify.compare import Row, compare
-from alula.identify.quality import r_squared
-from alula.identify.task import LONGITUDINAL, MOMENTS
+from alula.identify.equation_error.quality import r_squared
+from alula.identify.equation_error.task import LONGITUDINAL, MOMENTS
 from alula.reconstruct import reconstruct
 
 

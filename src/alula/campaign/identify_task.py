@@ -8,8 +8,8 @@ from typing import Any
 
 from alula.base.messages import Message
 from alula.identify import CoefficientData, Reference
-from alula.identify.carried import Shifts
-from alula.identify.measured_maneuver import MeasuredManeuver
+from alula.identify.flown.carried import Shifts
+from alula.identify.flown.measured_maneuver import MeasuredManeuver
 
 Measured = tuple[tuple[MeasuredManeuver, ...], tuple[Message, ...], list[Shifts]]
 

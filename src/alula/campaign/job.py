@@ -30,7 +30,7 @@ from alula.identify import (
     coefficients_as_recorded,
     coefficients_from_motion,
 )
-from alula.identify.task import LONGITUDINAL
+from alula.identify.equation_error.task import LONGITUDINAL
 from alula.reconstruct import Reconstruction, Segment, reconstruct
 from alula.report import ReportInput
 

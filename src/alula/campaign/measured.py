@@ -20,8 +20,8 @@ from alula.base.project import ReconstructSpec
 from alula.campaign.check import Checked
 from alula.flight import Flight, Motion
 from alula.identify import Reference, Thrust
-from alula.identify.carried import Shifts
-from alula.identify.measured_maneuver import MeasuredManeuver, measured_maneuver
+from alula.identify.flown.carried import Shifts
+from alula.identify.flown.measured_maneuver import MeasuredManeuver, measured_maneuver
 from alula.reconstruct import Reconstruction, Segment
 from alula.reconstruct.sensors import kind_of
 from alula.reconstruct.transfer import engines_on

@@ -13,15 +13,15 @@ from alula.campaign.by_outputs import by_outputs
 from alula.campaign.identify_task import IdentifyTask
 from alula.campaign.options import Kind, checked_options, one_of
 from alula.identify import Identification, identify_equation_error
-from alula.identify.bootstrap import BLOCK_OPTIONS, bootstrapped
-from alula.identify.flight_filter_error import STATES_OF, identify_flight_filter_error
-from alula.identify.frequency_regression import identify_frequency_regression
-from alula.identify.output_error import identify_output_error
-from alula.identify.output_error_problem import STATE_SETS
-from alula.identify.recursive import forgetting_of
-from alula.identify.recursive_equation_error import identify_recursive
-from alula.identify.regression_choice import OPTIONS as REGRESSION
-from alula.identify.regression_choice import regression_choice
+from alula.identify.equation_error.bootstrap import BLOCK_OPTIONS, bootstrapped
+from alula.identify.equation_error.choice import OPTIONS as REGRESSION
+from alula.identify.equation_error.choice import regression_choice
+from alula.identify.equation_error.recursive import identify_recursive
+from alula.identify.equation_error.recursive_least_squares import forgetting_of
+from alula.identify.flown.filter_error import STATES_OF, identify_flight_filter_error
+from alula.identify.flown.output_error import identify_output_error
+from alula.identify.flown.problem import STATE_SETS
+from alula.identify.frequency.regression import identify_frequency_regression
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Literal
 
 from alula.base.messages import BadInput, refuse
-from alula.identify.likelihood import Prior
+from alula.identify.likelihood.parameters import Prior
 
 Kind = Literal[
     "text", "flag", "number", "pair", "list", "names", "numbers", "texts", "pairs", "any"

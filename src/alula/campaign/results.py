@@ -30,7 +30,7 @@ from alula.campaign.sources.stated import Stated
 from alula.flight import Flight, Maneuver, SourceFile
 from alula.identify import CoefficientData
 from alula.identify.compare import Column, Entry
-from alula.identify.task import variables_of
+from alula.identify.equation_error.task import variables_of
 from alula.identify.typical import constant_name
 from alula.model import AeroModel, Reference, load_model, regressors
 

@@ -29,7 +29,7 @@ from alula.campaign.named import named
 from alula.campaign.validation_case import case_of, unequal_thrust
 from alula.flight import Maneuver
 from alula.identify import CoefficientData, Identification, identified_model
-from alula.identify.measured_maneuver import MeasuredManeuver
+from alula.identify.flown.measured_maneuver import MeasuredManeuver
 from alula.model import AeroModel, Reference, load_model
 from alula.reconstruct import Reconstruction, reconstruct
 from alula.report import ReportInput

@@ -8,14 +8,21 @@ from alula.identify.coefficients import (
     coefficients_as_recorded,
     coefficients_from_motion,
 )
-from alula.identify.equation_error import identify_equation_error
+from alula.identify.equation_error.choice import RegressionChoice
+from alula.identify.equation_error.identify import identify_equation_error
+from alula.identify.equation_error.recursive import identify_recursive
+from alula.identify.equation_error.recursive_least_squares import (
+    Forgetting,
+    recursive_least_squares,
+)
+from alula.identify.equation_error.state_space import (
+    StateSpace,
+    identify_state_space,
+    state_derivatives,
+)
+from alula.identify.frequency.recursive_fourier import recursive_frequency_regression
 from alula.identify.model import identified_model
-from alula.identify.recursive import Forgetting, recursive_least_squares
-from alula.identify.recursive_equation_error import identify_recursive
-from alula.identify.recursive_fourier import recursive_frequency_regression
-from alula.identify.regression_choice import RegressionChoice
 from alula.identify.result import Fit, History, Identification, Parameter, Series, Tie
-from alula.identify.state_space import StateSpace, identify_state_space, state_derivatives
 
 __all__ = [
     "CoefficientData",

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
 
-    from alula.identify.diagnostics import Diagnostics
-    from alula.identify.structure import Structure
+    from alula.identify.equation_error.diagnostics import Diagnostics
+    from alula.identify.regression.structure import Structure
 
 Verdict = Literal["ok", "weak", "not_identifiable"]
 

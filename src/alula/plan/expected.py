@@ -9,10 +9,10 @@ import numpy as np
 
 from alula.base.messages import refuse
 from alula.identify.coefficients import Reference
-from alula.identify.measured_maneuver import CONTROLS, OUTPUTS, STATES, MeasuredManeuver
-from alula.identify.output_error_problem import STATE_SETS
-from alula.identify.task import LONGITUDINAL
-from alula.identify.usual_outputs import USUAL_OUTPUTS
+from alula.identify.equation_error.task import LONGITUDINAL
+from alula.identify.flown.measured_maneuver import CONTROLS, OUTPUTS, STATES, MeasuredManeuver
+from alula.identify.flown.problem import STATE_SETS
+from alula.identify.flown.usual_outputs import USUAL_OUTPUTS
 from alula.model import AeroModel
 from alula.plan.information import Flown, Prediction, predict
 from alula.plan.output_error_information import predict_output_error

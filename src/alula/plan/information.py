@@ -27,8 +27,8 @@ from alula.base.arrays import Array
 from alula.base.local_cubic import LocalCubic
 from alula.flight import Motion
 from alula.identify.coefficients import Reference, regressor_variables
-from alula.identify.equation_error import LONGITUDINAL, MOMENTS
-from alula.identify.least_squares import least_squares
+from alula.identify.equation_error.identify import LONGITUDINAL, MOMENTS
+from alula.identify.regression.least_squares import least_squares
 from alula.identify.typical import typical_magnitude
 from alula.model import AeroModel, regressors
 

@@ -16,8 +16,8 @@ from typing import Literal
 import numpy as np
 
 from alula.base.messages import refuse
-from alula.identify.measured_maneuver import MeasuredManeuver
-from alula.identify.output_error_problem import FlightProblem, Setting
+from alula.identify.flown.measured_maneuver import MeasuredManeuver
+from alula.identify.flown.problem import FlightProblem, Setting
 from alula.model import AeroModel, Reference, aero_model, parse
 from alula.plan.information import Prediction, verdict_of
 

@@ -75,8 +75,9 @@ def to_model(
 def priors(model: AeroModel) -> dict[str, tuple[float, float]]:
     """Mean and standard error of each parameter, for estimation with a Gaussian prior.
 
-    `alula.identify.likelihood.Prior(*pair)` of each is what the estimators take. Parameters
-    without a standard error (None, or zero by symmetry) are left out: a prior needs a width.
+    `Prior(*pair)` of each (`alula.identify.likelihood.parameters`) is what the estimators take.
+    Parameters without a standard error (None, or zero by symmetry) are left out: a prior needs a
+    width.
     """
     if model.covariance is None:
         return {}

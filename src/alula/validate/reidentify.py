@@ -20,9 +20,9 @@ from alula.base.arrays import Array
 from alula.base.messages import BadInput, Message, refuse, warn
 from alula.identify.coefficients import CoefficientData, regressor_variables
 from alula.identify.coefficients import Reference as DataReference
-from alula.identify.measured_maneuver import STATES, MeasuredManeuver
+from alula.identify.equation_error.task import MOMENTS
+from alula.identify.flown.measured_maneuver import STATES, MeasuredManeuver
 from alula.identify.result import Identification
-from alula.identify.task import MOMENTS
 from alula.model import AeroModel
 from alula.simulate import SimulatedFlight
 from alula.validate.case import Case

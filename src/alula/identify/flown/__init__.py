@@ -1,0 +1,1 @@
+"""The equations of motion flown with the model: output error, filter error, the stall."""

@@ -1,0 +1,1 @@
+"""Methods in the frequency domain: regression, output error, frequency responses."""

@@ -1,0 +1,1 @@
+"""Maxima of a likelihood, and the parameters and errors read off them."""

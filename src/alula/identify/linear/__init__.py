@@ -1,0 +1,1 @@
+"""Linear state equations with named parameters: output error and filter error."""
