@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <alula/math/lanes.hpp>
+#include <alula/math/near.hpp>
 #include <alula/math/rows.hpp>
 #include <cmath>
 #include <limits>
@@ -55,6 +56,39 @@ TYPED_TEST(LaneMathematics, SineAndCosineKeepTheStatedError) {
   }
   EXPECT_LT(worst, bound);
   EXPECT_GT(worst, 0);  // the comparison compares
+}
+
+// From inside the series' range, from beyond it, and from lanes of both kinds.
+TYPED_TEST(LaneMathematics, SineAndCosineNearAKnownAngle) {
+  using T = TypeParam;
+  using L = Lanes<T, 4>;
+  const long double bound = 4 * std::numeric_limits<T>::epsilon();  // known angle, products, sum
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> angle(-3, 3), step(-1, 1);
+  long double worst = 0;
+  for (const double size : {0.0, 1e-9, 1e-3, 1.0 / 32, 0.05, 2.0})
+    for (int i = 0; i < 20000; ++i) {
+      const L x = L::from([&](int) { return static_cast<T>(angle(random)); });
+      const L d = L::from([&](int) { return static_cast<T>(size * step(random)); });
+      L sine, cosine, s, c;
+      sincos(x, sine, cosine);
+      alula::sincos_near(sine, cosine, x, d, s, c);
+      T one_s, one_c;
+      alula::sincos_near(sine[0], cosine[0], x[0], d[0], one_s, one_c);
+      for (int j = 0; j < 4; ++j) {
+        const long double a = static_cast<long double>(x[j]) + d[j];
+        // Beyond the range x + d is rounded before its sine is taken.
+        const long double rounding = std::abs(a) * std::numeric_limits<T>::epsilon() / 2;
+        worst = std::max({worst, std::abs(s[j] - std::sin(a)) - rounding,
+                          std::abs(c[j] - std::cos(a)) - rounding});
+        if (j == 0) {
+          worst = std::max({worst, std::abs(one_s - std::sin(a)) - rounding,
+                            std::abs(one_c - std::cos(a)) - rounding});
+        }
+      }
+    }
+  EXPECT_LT(worst, bound);
+  EXPECT_GT(worst, 0);
 }
 
 TYPED_TEST(LaneMathematics, ArctangentKeepsTheStatedError) {

@@ -5,7 +5,6 @@
 #include <alula/filters/careful_update.hpp>
 #include <alula/filters/path_jacobians.hpp>
 #include <alula/math/cholesky.hpp>
-#include <cstring>
 #include <limits>
 
 namespace alula {
@@ -44,10 +43,9 @@ class Extended {
 
  protected:
   T H_[kMaxOutputs][R];
-  alignas(64) T before_[R][R];  // P before the update
 
-  // The readings z taken up where they are linear about x: predicted + H_ (state - x). P, which
-  // was `before_`, becomes that after the update; `step` is the state's. Returns as `update`.
+  // The readings z taken up where they are linear about x: predicted + H_ (state - x). P becomes
+  // that after the update; `step` is the state's. Returns as `update`.
   int take_up(const PathModel<T>& model, const T* z, const T* predicted, T* step, T* innovation,
               T* deviation);
 
@@ -73,14 +71,13 @@ class Extended {
     }
     for (int i = 0; i < N; ++i) {
       clear<R>(FP[i]);
-      for (int s = 0; s < model.dynamic; ++s)
-        if (F_[i][s] != T(0)) add_scaled<R>(FP[i], F_[i][s], P[s]);
+      add_rows<R>(FP[i], F_[i], P, model.dynamic);
     }
     for (int i = 0; i < N; ++i) {
       T row[kShortRow] = {};
       if (i < kMotionStates)
         for (int j = i; j < kMotionStates; ++j) row[j] = Q[i][j];
-      for (int k = 0; k < model.dynamic; ++k) add_scaled<kShortRow>(row, FP[i][k], transposed[k]);
+      add_rows<kShortRow>(row, FP[i], transposed, model.dynamic);
       for (int j = i; j < N; ++j) P[i][j] = P[j][i] = row[j];
       for (int c = N; c < n; ++c) P[i][c] = P[c][i] = FP[i][c];
       if (!(std::abs(x[i]) < T(1e30))) return false;
@@ -104,7 +101,6 @@ int Extended<T, R>::update(const PathModel<T>& model, const T* u, const T* z, T*
                            T* deviation) {
   T predicted[kMaxOutputs], step[R];
   path_outputs_jacobian<R>(model, x, u, predicted, H_);
-  std::memcpy(before_, P, sizeof P);
   const int used = take_up(model, z, predicted, step, innovation, deviation);
   for (int i = 0; i < model.states; ++i) x[i] += step[i];
   return used;
@@ -114,33 +110,41 @@ template <class T, int R>
 int Extended<T, R>::take_up(const PathModel<T>& model, const T* z, const T* predicted, T* step,
                             T* innovation, T* deviation) {
   const int n = model.states;
-  T PH[R];
+  // Covariances of state and readings, given the readings before; the gains, negative.
+  T PH[kMaxOutputs][R], K[kMaxOutputs][R];
   int used = 0;
   clear<R>(step);
   for (int s = 0; s < model.sensors.size(); ++s) {
     innovation[s] = deviation[s] = std::numeric_limits<T>::quiet_NaN();
     if (!std::isfinite(z[s])) continue;
     const T* h = H_[s];
-    const T variance = model.sensors[s].variance;
-    clear<R>(PH);
-    T e = wrapped(model.sensors[s].quantity, z[s] - predicted[s]);
-    for (int j = 0; j < n; ++j) {
-      if (h[j] == T(0)) continue;
-      e -= h[j] * step[j];
-      add_scaled<R>(PH, h[j], P[j]);
+    int at[R], count = 0;          // where h is not zero
+    for (int j = 0; j < n; ++j) {  // no branch: which are, no processor can guess
+      at[count] = j;
+      count += h[j] != T(0);
     }
-    T total = variance;
-    for (int j = 0; j < n; ++j) total += h[j] * PH[j];
-    // Here the subtraction below would cancel more than six digits.
+    const auto times = [&](const T* row) {
+      T sum = T(0);
+      for (int k = 0; k < count; ++k) sum += h[at[k]] * row[at[k]];
+      return sum;
+    };
+    T known[kMaxOutputs];
+    clear<R>(PH[used]);
+    for (int k = 0; k < count; ++k) add_scaled<R>(PH[used], h[at[k]], P[at[k]]);
+    for (int t = 0; t < used; ++t) known[t] = times(K[t]);
+    add_rows<R>(PH[used], known, PH, used);
+    const T variance = model.sensors[s].variance, total = variance + times(PH[used]);
+    // Here subtracting from P would cancel more than six digits.
     if (!(variance > T(1e-6) * total))
       return take_up_carefully(model, z, predicted, step, innovation, deviation);
-    const T inverse = T(1) / total;
-    for (int i = 0; i < n; ++i) add_scaled<R>(P[i], -PH[i] * inverse, PH);
-    add_scaled<R>(step, e * inverse, PH);
+    const T e = wrapped(model.sensors[s].quantity, z[s] - predicted[s]) - times(step);
+    scale<R>(K[used], T(-1) / total, PH[used]);
+    add_scaled<R>(step, -e, K[used]);
     innovation[s] = e;
     deviation[s] = std::sqrt(total);
     ++used;
   }
+  for (int i = 0; i < n; ++i) add_rows<R>(P[i], &K[0][i], PH, used, R);
   bool positive = !delicate_;
   for (int i = 0; i < n; ++i) positive = positive && P[i][i] > T(0);
   return positive || repair(n) ? used : -1;
@@ -154,7 +158,6 @@ int Extended<T, R>::take_up_carefully(const PathModel<T>& model, const T* z, con
   T X[R][kColumns], Y[kMaxOutputs][kColumns], U[R][R], variance[kMaxOutputs], e[kMaxOutputs],
       d[kMaxOutputs];
   int present[kMaxOutputs], ny = 0;
-  std::memcpy(P, before_, sizeof P);
   delicate_ = true;
   const int raised = cholesky<R>(P, U, n);
   if (raised < 0) return -1;

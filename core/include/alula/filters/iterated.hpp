@@ -4,6 +4,7 @@
 // likelihood of state and readings (Bell and Cathey 1993). The prediction is the extended filter's.
 // Source: Dittrich 2016, Eq. (3.27) to (3.31).
 #include <alula/filters/extended.hpp>
+#include <cstring>
 
 namespace alula {
 
@@ -63,7 +64,7 @@ class Iterated : public Extended<T, R> {
 
  private:
   using Extended<T, R>::H_;
-  using Extended<T, R>::before_;
+  alignas(64) T before_[R][R];  // P before the update
   int repairs_before_ = 0;
 
   // The update from x and `before_` with the readings linear about `about`, Eq. (3.28). misfit: of

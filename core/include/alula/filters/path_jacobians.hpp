@@ -2,6 +2,7 @@
 // Exact derivatives of the flight path reconstruction's readings and steps, and the noise that its
 // inputs bring. Source: as path_model.hpp.
 #include <alula/filters/path_model.hpp>
+#include <alula/motion/point_jacobian.hpp>
 
 namespace alula {
 
@@ -21,6 +22,8 @@ inline void path_outputs_jacobian(const PathModel<T>& model, const T* x, const T
   for (int i = 0; i < 3; ++i) wind[i] = D::variable(unknown(model, x, kWindNorth + i), 9 + i);
   const PathAir<D> air = path_air(model, y, wind, rates);
 
+  T gain[3];
+  for (int j = 0; j < 3; ++j) gain[j] = T(1) / (T(1) + unknown(model, x, kScaleP + j));
   for (int s = 0; s < model.sensors.size(); ++s) {
     const PathSensor<T>& sensor = model.sensors[s];
     D induced;
@@ -30,7 +33,7 @@ inline void path_outputs_jacobian(const PathModel<T>& model, const T* x, const T
     const T change = quantity.value - sensor.reference;
     z[s] = quantity.value + scale * change + induced.value + bias;
     T* h = H[s];
-    for (int j = 0; j < model.states; ++j) h[j] = T(0);
+    clear<R>(h);
     const D total = quantity * (T(1) + scale) + induced;
     T slope[12];
     for (int j = 0; j < 12; ++j) slope[j] = total.slope_of(j);
@@ -39,10 +42,9 @@ inline void path_outputs_jacobian(const PathModel<T>& model, const T* x, const T
     if (sensor.quantity == Quantity::north) h[kNorth] = T(1) + scale;
     if (sensor.quantity == Quantity::east) h[kEast] = T(1) + scale;
     for (int j = 0; j < 3; ++j) {  // m = (measured - bias)/(1 + e): dm/dbias, dm/de
-      const T gain = T(1) / (T(1) + unknown(model, x, kScaleP + j));
-      if (model.slot[kBiasP + j] >= 0) h[model.slot[kBiasP + j]] = -gain * slope[6 + j];
-      if (model.slot[kScaleP + j] >= 0)
-        h[model.slot[kScaleP + j]] = -gain * m[3 + j] * slope[6 + j];
+      const T rate = -gain[j] * slope[6 + j];
+      if (model.slot[kBiasP + j] >= 0) h[model.slot[kBiasP + j]] = rate;
+      if (model.slot[kScaleP + j] >= 0) h[model.slot[kScaleP + j]] = rate * m[3 + j];
       if (model.slot[kWindNorth + j] >= 0) h[model.slot[kWindNorth + j]] = slope[9 + j];
     }
     if (sensor.scale_slot >= 0) h[sensor.scale_slot] = change;
@@ -59,8 +61,8 @@ inline void path_step_jacobian(const PathModel<T>& model, T* x, const T* u0, con
   true_inputs(model, x, u1, m1);
   point_step_jacobian<N>(x, m0, m1, model.gravity, dt, A, B);
   for (int i = 0; i < N; ++i) {
+    clear<R>(F[i]);
     for (int j = 0; j < N; ++j) F[i][j] = A[i][j];
-    for (int j = N; j < model.states; ++j) F[i][j] = T(0);
   }
   for (int k = 0; k < kInertialInputs; ++k) {
     const T gain = T(1) / (T(1) + unknown(model, x, kScaleAx + k));

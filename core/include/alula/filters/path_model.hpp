@@ -145,17 +145,18 @@ inline PathAir<S> path_air(const PathModel<T>& model, const S* y, const S* wind,
 template <class S, class T>
 inline S path_quantity(const PathSensor<T>& sensor, const S* y, const PathAir<S>& air, S& induced) {
   induced = S(T(0));
-  const bool central =
-      sensor.position[0] == T(0) && sensor.position[1] == T(0) && sensor.position[2] == T(0);
+  const auto central = [&] {
+    return sensor.position[0] == T(0) && sensor.position[1] == T(0) && sensor.position[2] == T(0);
+  };
   switch (sensor.quantity) {  // what takes no arithmetic
     case Quantity::phi: return y[kPhi];
     case Quantity::theta: return y[kTheta];
     case Quantity::psi: return y[kPsi];
     case Quantity::height:
-      if (central) return y[kHeight];
+      if (central()) return y[kHeight];
       break;
     case Quantity::airspeed:
-      if (central) return air.speed;
+      if (central()) return air.speed;
       break;
     default: break;
   }

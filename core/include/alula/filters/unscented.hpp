@@ -201,7 +201,7 @@ bool Unscented<T, R>::predict(const PathModel<T>& model, const T* u0, const T* u
   for (int i = 0; i < N; ++i) {
     T* row = P[i];
     clear<R>(row);
-    for (int j = 0; j < model.dynamic; ++j) add_scaled_from<R>(j > N ? j : N, row, D_[i][j], U_[j]);
+    add_rows<R, N>(row, D_[i], U_, model.dynamic);
     point_products<R>(X_, i, N, n, middle, row);
     if (i < kMotionStates)
       for (int j = i; j < kMotionStates; ++j) row[j] += Q[i][j];
@@ -234,7 +234,7 @@ void Unscented<T, R>::sense(const PathModel<T>& model, const T* u, const T* z, S
     sensed.middle[s] = value - mean;
     sensed.e[s] = wrapped(model.sensors[present[s]].quantity, z[present[s]] - mean);
     clear<R>(C_[s]);
-    for (int j = 0; j < n; ++j) add_scaled_from<R>(j, C_[s], DY_[s][j], U_[j]);
+    add_rows<R>(C_[s], DY_[s], U_, n);
   }
   for (int s = 0; s < ny; ++s) {
     point_products<R>(Y_, s, ny, n, sensed.middle, sensed.S[s]);
@@ -260,10 +260,15 @@ int Unscented<T, R>::update(const PathModel<T>& model, const T* u, const T* z, T
     covariance_of<R>(X, n, columns, P);
     return sensed.count;
   }
-  return take_up(sensed, innovation, deviation, [&](const T* w, T inverse) {
-    for (int i = 0; i < n; ++i) add_scaled_from<R>(i, P[i], -w[i] * inverse, w);
+  T K[kMaxOutputs][R];
+  int used = 0;
+  take_up(sensed, innovation, deviation, [&](const T* w, T inverse) {
+    scale<R>(K[used++], -inverse, w);
     return true;
   });
+  if (used < sensed.count) return -1;
+  for (int i = 0; i < n; ++i) add_rows_from<R>(i, P[i], &K[0][i], C_, used, R);
+  return used;
 }
 
 template <class T, int R>

@@ -16,24 +16,23 @@ inline constexpr T kPivotFloor = sizeof(T) == 8 ? T(1e-14) : T(1e-6);
 template <int R, class T>
 inline int cholesky(const T (*A)[R], T (*U)[R], int n) {
   int raised = 0;
-  T diagonal[R];
+  for (int i = 0; i < n; ++i)
+    if (!(A[i][i] > T(0)) || !(A[i][i] < T(1e37))) return -1;
   for (int i = 0; i < n; ++i) {
-    scale<R>(U[i], T(1), A[i]);
-    diagonal[i] = A[i][i];
-    if (!(diagonal[i] > T(0)) || !(diagonal[i] < T(1e37))) return -1;
-  }
-  for (int k = 0; k < n; ++k) {
-    T* row = U[k];
-    for (int j = 0; j < k; ++j) row[j] = T(0);
-    T pivot = row[k];
-    if (!(pivot > kPivotFloor<T> * diagonal[k])) {
-      pivot = kPivotFloor<T> * diagonal[k];
+    T* row = U[i];
+    T column[R];
+    for (int k = 0; k < i; ++k) column[k] = -U[k][i];
+    scale<R>(row, T(1), A[i]);
+    add_rows_from<R>(i, row, column, U, i);
+    for (int j = 0; j < i; ++j) row[j] = T(0);
+    T pivot = row[i];
+    if (!(pivot > kPivotFloor<T> * A[i][i])) {
+      pivot = kPivotFloor<T> * A[i][i];
       clear<R>(row);  // a positive definite matrix leaves no room for the rest of the row
-      row[k] = pivot;
+      row[i] = pivot;
       ++raised;
     }
     scale<R>(row, T(1) / std::sqrt(pivot), row);
-    for (int i = k + 1; i < n; ++i) add_scaled_from<R>(i, U[i], -row[i], row);
   }
   return raised;
 }

@@ -38,6 +38,51 @@ inline void clear(T* y) {
   for (int k = 0; k < R; k += kLanes) Lanes<T, kLanes>(T(0)).store(y + k);
 }
 
+namespace detail {
+template <class L, class T>
+inline L weighted_at(int k, T f, const T* x) {
+  return L(f) * L::load(x + k);
+}
+template <class L, class T, class... Rest>
+inline L weighted_at(int k, T f, const T* x, const Rest&... rest) {
+  return L(f) * L::load(x + k) + weighted_at<L>(k, rest...);
+}
+}  // namespace detail
+
+// y = f x + f2 x2 + ..., each factor before its row.
+template <int R, class T, class... Rest>
+inline void combine(T* y, T f, const T* x, const Rest&... rest) {
+  using L = Lanes<T, kLanes>;
+  for (int k = 0; k < R; k += kLanes) detail::weighted_at<L>(k, f, x, rest...).store(y + k);
+}
+
+// y += f[0] rows[0] + f[1] rows[1] + ... over `count` rows, summed in registers in that order. The
+// factors are `stride` apart; columns before First are left as they are.
+template <int R, int First = 0, int C, class T>
+inline void add_rows(T* y, const T* f, const T (*rows)[C], int count, int stride = 1) {
+  using L = Lanes<T, kLanes>;
+  constexpr int begin = First / kLanes * kLanes;
+  static_assert(R % kLanes == 0 && R <= C);
+  [&]<int... b>(std::integer_sequence<int, b...>) {
+    L sum[] = {L::load(y + begin + b * kLanes)...};
+    for (int i = 0; i < count; ++i) {
+      const L factor(f[i * stride]);
+      ((sum[b] += factor * L::load(&rows[i][begin + b * kLanes])), ...);
+    }
+    (sum[b].store(y + begin + b * kLanes), ...);
+  }(std::make_integer_sequence<int, (R - begin) / kLanes>());
+}
+
+// The same where nothing before `first` counts.
+template <int R, class T>
+inline void add_rows_from(int first, T* y, const T* f, const T (*rows)[R], int count,
+                          int stride = 1) {
+  if (first < R / 2)
+    add_rows<R>(y, f, rows, count, stride);
+  else
+    add_rows<R, R / 2>(y, f, rows, count, stride);
+}
+
 // Sums of a b, a b2, a b3, a b4: four at once hide the adders' latency.
 template <int R, class T>
 inline void dot4(const T* a, const T* b, const T* b2, const T* b3, const T* b4, T* out) {

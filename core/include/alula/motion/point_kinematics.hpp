@@ -5,6 +5,7 @@
 // Source: van den Hoek 2017, Eq. (3), with the yaw equation corrected; Dittrich 2016, Sec. 2.4.2.
 #include <alula/math/dual.hpp>
 #include <alula/math/lanes.hpp>
+#include <alula/math/near.hpp>
 
 namespace alula {
 
@@ -15,13 +16,25 @@ inline constexpr int kMotionStates = 7;
 inline constexpr int kMotionStatesWithPosition = 9;
 inline constexpr int kInertialInputs = 6;  // ax ay az [m/s2] p q r [rad/s], true values
 
-// Rates d of the state y under inputs m. N is 7, or 9 with position.
-template <int N, class S, class T>
-inline void point_derivative(const S* y, const S* m, T gravity, S* d) {
-  const S &u = y[kU], &v = y[kV], &w = y[kW], &p = m[3], &q = m[4], &r = m[5];
+// Sines and cosines of roll and pitch, at a state or near one whose own are known.
+template <class S>
+struct RollPitch {
   S sp, cp, st, ct;
-  sincos(y[kPhi], sp, cp);
-  sincos(y[kTheta], st, ct);
+  explicit RollPitch(const S* y) {
+    sincos(y[kPhi], sp, cp);
+    sincos(y[kTheta], st, ct);
+  }
+  RollPitch(const RollPitch& near, const S* y, const S* x) {
+    sincos_near(near.sp, near.cp, y[kPhi], x[kPhi] - y[kPhi], sp, cp);
+    sincos_near(near.st, near.ct, y[kTheta], x[kTheta] - y[kTheta], st, ct);
+  }
+};
+
+// Rates d of the state y, rolled and pitched so, under inputs m. N is 7, or 9 with position.
+template <int N, class S, class T>
+inline void point_derivative(const S* y, const RollPitch<S>& tilt, const S* m, T gravity, S* d) {
+  const S &u = y[kU], &v = y[kV], &w = y[kW], &p = m[3], &q = m[4], &r = m[5];
+  const auto& [sp, cp, st, ct] = tilt;
   const S side = v * sp + w * cp;  // horizontal-plane part of v and w, rolled level
   d[kHeight] = u * st - side * ct;
   d[kU] = m[0] + r * v - q * w - S(gravity) * st;
@@ -46,71 +59,24 @@ inline void point_step(S* y, const S* m0, const S* m1, T gravity, T dt) {
   S mid[kInertialInputs], k[N], total[N], x[N];
   for (int i = 0; i < kInertialInputs; ++i) mid[i] = S(T(0.5)) * (m0[i] + m1[i]);
   const S half(T(0.5) * dt), full(dt), two(T(2)), sixth(dt / T(6));
-  point_derivative<N>(y, m0, gravity, k);
+  const RollPitch<S> tilt(y);
+  point_derivative<N>(y, tilt, m0, gravity, k);
   for (int i = 0; i < N; ++i) {
     total[i] = k[i];
     x[i] = y[i] + half * k[i];
   }
-  point_derivative<N>(x, mid, gravity, k);
+  point_derivative<N>(x, RollPitch<S>(tilt, y, x), mid, gravity, k);
   for (int i = 0; i < N; ++i) {
     total[i] += two * k[i];
     x[i] = y[i] + half * k[i];
   }
-  point_derivative<N>(x, mid, gravity, k);
+  point_derivative<N>(x, RollPitch<S>(tilt, y, x), mid, gravity, k);
   for (int i = 0; i < N; ++i) {
     total[i] += two * k[i];
     x[i] = y[i] + full * k[i];
   }
-  point_derivative<N>(x, m1, gravity, k);
+  point_derivative<N>(x, RollPitch<S>(tilt, y, x), m1, gravity, k);
   for (int i = 0; i < N; ++i) y[i] = y[i] + sixth * (total[i] + k[i]);
-}
-
-// The step above with its exact Jacobians: A = dy1/dy0 (N x N), B = dy1/dm (N x 6) for one and
-// the same change of the inputs at both ends, as a bias makes it. Height, north and east do not
-// enter the rates; the twelve directions are u v w phi theta psi and the six inputs.
-template <int N, class T>
-inline void point_step_jacobian(T* y, const T* m0, const T* m1, T gravity, T dt, T (*A)[N],
-                                T (*B)[kInertialInputs]) {
-  using D = Dual<T, 12>;
-  D x[N], a[kInertialInputs], b[kInertialInputs];
-  x[kHeight] = D(y[kHeight]);
-  for (int i = 0; i < 6; ++i) x[kU + i] = D::variable(y[kU + i], i);
-  for (int i = kMotionStates; i < N; ++i) x[i] = D(y[i]);
-  for (int i = 0; i < kInertialInputs; ++i) {
-    a[i] = D::variable(m0[i], 6 + i);
-    b[i] = D::variable(m1[i], 6 + i);
-  }
-  point_step<N>(x, a, b, gravity, dt);
-  for (int i = 0; i < N; ++i) {
-    y[i] = x[i].value;
-    for (int j = 0; j < N; ++j) A[i][j] = T(i == j && (j == kHeight || j >= kMotionStates));
-    for (int j = 0; j < 6; ++j) A[i][kU + j] = x[i].slope_of(j);
-    for (int j = 0; j < kInertialInputs; ++j) B[i][j] = x[i].slope_of(6 + j);
-  }
-}
-
-// G = d(rates)/d(inputs) at y: how input noise drives the seven states (north, east: none).
-template <class T>
-inline void point_input_gain(const T* y, T (*G)[kInertialInputs]) {
-  T sp, cp, st, ct;
-  sincos(y[kPhi], sp, cp);
-  sincos(y[kTheta], st, ct);
-  const T u = y[kU], v = y[kV], w = y[kW], tt = st / ct;
-  for (int i = 0; i < kMotionStates; ++i)
-    for (int j = 0; j < kInertialInputs; ++j) G[i][j] = T(0);
-  G[kU][0] = G[kV][1] = G[kW][2] = G[kPhi][3] = T(1);
-  G[kU][4] = -w;
-  G[kU][5] = v;
-  G[kV][3] = w;
-  G[kV][5] = -u;
-  G[kW][3] = -v;
-  G[kW][4] = u;
-  G[kPhi][4] = sp * tt;
-  G[kPhi][5] = cp * tt;
-  G[kTheta][4] = cp;
-  G[kTheta][5] = -sp;
-  G[kPsi][4] = sp / ct;
-  G[kPsi][5] = cp / ct;
 }
 
 }  // namespace alula
