@@ -26,14 +26,19 @@ inline void path_outputs_jacobian(const PathModel<T>& model, const T* x, const T
   for (int j = 0; j < 3; ++j) gain[j] = T(1) / (T(1) + unknown(model, x, kScaleP + j));
   for (int s = 0; s < model.sensors.size(); ++s) {
     const PathSensor<T>& sensor = model.sensors[s];
+    T* h = H[s];
+    clear<R>(h);
+    if (const int state = plain_state(sensor); state >= 0) {
+      z[s] = x[state];
+      h[state] = T(1);
+      continue;
+    }
     D induced;
     const D quantity = path_quantity(sensor, y, air, induced);
     const T scale = sensor.scale_slot >= 0 ? x[sensor.scale_slot] : sensor.scale;
     const T bias = sensor.bias_slot >= 0 ? x[sensor.bias_slot] : sensor.bias;
     const T change = quantity.value - sensor.reference;
     z[s] = quantity.value + scale * change + induced.value + bias;
-    T* h = H[s];
-    clear<R>(h);
     const D total = quantity * (T(1) + scale) + induced;
     T slope[12];
     for (int j = 0; j < 12; ++j) slope[j] = total.slope_of(j);

@@ -79,6 +79,11 @@ struct PathModel {
   }
 };
 
+template <class T>
+inline bool at_inertial_sensor(const PathSensor<T>& s) {
+  return s.position[0] == T(0) && s.position[1] == T(0) && s.position[2] == T(0);
+}
+
 // Calls step(N) with the number of motion states as a constant. With position there are seldom few
 // states, so that only the long rows serve them: half the code.
 template <int R, class T, class Step>
@@ -114,6 +119,21 @@ inline void true_inputs(const PathModel<T>& model, const S* x, const T* measured
   }
 }
 
+// The state that a sensor reads as it is, -1 where it takes arithmetic.
+template <class T>
+inline int plain_state(const PathSensor<T>& sensor) {
+  if (sensor.scale_slot >= 0 || sensor.bias_slot >= 0 || sensor.scale != T(0) ||
+      sensor.bias != T(0))
+    return -1;
+  switch (sensor.quantity) {
+    case Quantity::phi: return kPhi;
+    case Quantity::theta: return kTheta;
+    case Quantity::psi: return kPsi;
+    case Quantity::height: return at_inertial_sensor(sensor) ? kHeight : -1;
+    default: return -1;
+  }
+}
+
 // What all sensors share at one instant: air velocity of the inertial sensor in body axes with its
 // magnitude, and the rates.
 template <class S>
@@ -145,18 +165,15 @@ inline PathAir<S> path_air(const PathModel<T>& model, const S* y, const S* wind,
 template <class S, class T>
 inline S path_quantity(const PathSensor<T>& sensor, const S* y, const PathAir<S>& air, S& induced) {
   induced = S(T(0));
-  const auto central = [&] {
-    return sensor.position[0] == T(0) && sensor.position[1] == T(0) && sensor.position[2] == T(0);
-  };
   switch (sensor.quantity) {  // what takes no arithmetic
     case Quantity::phi: return y[kPhi];
     case Quantity::theta: return y[kTheta];
     case Quantity::psi: return y[kPsi];
     case Quantity::height:
-      if (central()) return y[kHeight];
+      if (at_inertial_sensor(sensor)) return y[kHeight];
       break;
     case Quantity::airspeed:
-      if (central()) return air.speed;
+      if (at_inertial_sensor(sensor)) return air.speed;
       break;
     default: break;
   }

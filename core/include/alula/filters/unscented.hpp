@@ -217,15 +217,29 @@ template <class T, int R>
 void Unscented<T, R>::sense(const PathModel<T>& model, const T* u, const T* z, Sensed& sensed) {
   const int n = model.states, ny = sensed.count;
   const int* present = sensed.present;
-  for (int side = 0; side < 2; ++side)
+  int other[kMaxOutputs], others = 0;  // what does not read a state as it is
+  for (int s = 0; s < ny; ++s) {
+    const int state = plain_state(model.sensors[present[s]]);
+    if (state < 0) {
+      other[others++] = s;
+      continue;
+    }
+    for (int k = 0; k < R; k += W) {
+      const L middle(x[state]), away = L::load(&spread_[state][k]);
+      (middle + away).store(&Y_[s][k]);
+      (middle - away).store(&Y_[s][R + k]);
+    }
+  }
+  for (int side = 0; others > 0 && side < 2; ++side)
     for (int b = 0; b < n + 1 - side; b += W) {  // the mean point once, on the plus side
       L state[kMaxStates], m[kInertialInputs], wind[3];
       points(b, side == 0 ? T(1) : T(-1), n, state);
       true_inputs(model, state, u, m, 3);
       for (int i = 0; i < 3 && model.wind; ++i) wind[i] = unknown(model, state, kWindNorth + i);
       const PathAir<L> air = path_air(model, state, wind, m);
-      for (int s = 0; s < ny; ++s)
-        path_output(model.sensors[present[s]], state, air).store(&Y_[s][side * R + b]);
+      for (int i = 0; i < others; ++i)
+        path_output(model.sensors[present[other[i]]], state, air)
+            .store(&Y_[other[i]][side * R + b]);
     }
   for (int s = 0; s < ny; ++s) {
     const T value = Y_[s][n];
