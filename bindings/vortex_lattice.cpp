@@ -48,21 +48,30 @@ auto array(const Points& points) {
   return out.numpy();
 }
 
-Result vortex_lattice(Matrix vertices, Integers row_start, Integers row_surface, Matrix trailing,
-                      Integers row_trailing, Matrix control, Matrix middle, Matrix normal,
-                      Cube normal_rate, Vector parity, Integers mirror, int right, int center,
-                      Integers strip, Matrix strip_first, Matrix strip_last, Matrix strip_middle,
-                      double alpha, double beta, double mach, Vector rate, Vector point,
-                      Vector reference, double core, bool turning) {
+// An attribute of the panels that Python made. Raises AttributeError, RuntimeError (another type).
+template <class A>
+A part(nb::handle panels, const char* name) {
+  return nb::cast<A>(panels.attr(name));
+}
+
+Lattice lattice(nb::handle panels) {
   Lattice a;
+  const auto control = part<Matrix>(panels, "control"), trailing = part<Matrix>(panels, "trailing"),
+             strip_first = part<Matrix>(panels, "strip_first");
+  const auto row_surface = part<Integers>(panels, "row_surface");
+  const auto normal_rate = part<Cube>(panels, "normal_rate");
+  const auto parity = part<Vector>(panels, "parity");
+  const int right = part<int>(panels, "right"), center = part<int>(panels, "center");
   const std::size_t n = control.shape(0), strips = strip_first.shape(0);
   if (n < 1 || n > static_cast<std::size_t>(kMaxPanels))
     throw nb::value_error("panels: none, or more than LATTICE_PANELS");
   if (right < 0 || center < 0 || static_cast<std::size_t>(2 * right + center) != n)
     throw nb::value_error("right, center: 2 right + center must be the panels");
   const std::size_t rows = row_surface.shape(0);
-  a.vertices = points(vertices, n + rows, "vertices: expected (panels + rows, 3)");
-  const auto start = integers(row_start, rows + 1, static_cast<int>(n + rows) + 1, "row_start");
+  a.vertices =
+      points(part<Matrix>(panels, "vertices"), n + rows, "vertices: expected (panels + rows, 3)");
+  const auto start = integers(part<Integers>(panels, "row_start"), rows + 1,
+                              static_cast<int>(n + rows) + 1, "row_start");
   for (std::size_t r = 0; r < rows; ++r)
     if (start[r] + 2 > start[r + 1]) throw nb::value_error("row_start: an empty row");
   if (start[0] != 0 || start[rows] != static_cast<int>(n + rows))
@@ -70,15 +79,15 @@ Result vortex_lattice(Matrix vertices, Integers row_start, Integers row_surface,
   const auto of = integers(row_surface, rows, static_cast<int>(rows), "row_surface");
   const int edges = static_cast<int>(trailing.shape(0));
   a.trailing = points(trailing, trailing.shape(0), "trailing: expected (edges, 3)");
-  const auto edge = integers(row_trailing, rows, edges, "row_trailing");
+  const auto edge = integers(part<Integers>(panels, "row_trailing"), rows, edges, "row_trailing");
   for (int r = 0; r < static_cast<int>(rows); ++r) {
     a.rows.push_back({start[r + 1] - start[r] - 1, start[r] - r, start[r], edge[r], of[r]});
     if (edge[r] + start[r + 1] - start[r] > edges)
       throw nb::value_error("row_trailing: a row beyond the last edge");
   }
   a.control = points(control, n, "control: expected (panels, 3)");
-  a.middle = points(middle, n, "middle: expected (panels, 3)");
-  a.normal = points(normal, n, "normal: expected (panels, 3)");
+  a.middle = points(part<Matrix>(panels, "middle"), n, "middle: expected (panels, 3)");
+  a.normal = points(part<Matrix>(panels, "normal"), n, "normal: expected (panels, 3)");
   if (normal_rate.shape(1) != n || normal_rate.shape(2) != 3 ||
       parity.shape(0) != normal_rate.shape(0))
     throw nb::value_error("normal_rate, parity: expected (controls, panels, 3) and (controls,)");
@@ -87,13 +96,22 @@ Result vortex_lattice(Matrix vertices, Integers row_start, Integers row_surface,
     a.parity.push_back(parity(k) < 0.0 ? -1 : 1);
   }
   a.right = right, a.center = center;
-  a.mirror = integers(mirror, static_cast<std::size_t>(right), static_cast<int>(n), "mirror");
+  a.mirror = integers(part<Integers>(panels, "mirror"), static_cast<std::size_t>(right),
+                      static_cast<int>(n), "mirror");
   for (int i : a.mirror)
     if (i < a.solved()) throw nb::value_error("mirror: images must follow the solved panels");
-  a.strip = integers(strip, n, static_cast<int>(strips), "strip");
+  a.strip = integers(part<Integers>(panels, "strip"), n, static_cast<int>(strips), "strip");
   a.strip_first = points(strip_first, strips, "strip_first: expected (strips, 3)");
-  a.strip_last = points(strip_last, strips, "strip_last: expected (strips, 3)");
-  a.strip_middle = points(strip_middle, strips, "strip_middle: expected (strips, 3)");
+  a.strip_last =
+      points(part<Matrix>(panels, "strip_last"), strips, "strip_last: expected (strips, 3)");
+  a.strip_middle =
+      points(part<Matrix>(panels, "strip_wash"), strips, "strip_wash: expected (strips, 3)");
+  return a;
+}
+
+Result vortex_lattice(nb::object panels, double alpha, double beta, double mach, Vector rate,
+                      Vector point, Vector reference, double core, bool turning) {
+  const Lattice a = lattice(panels);
   Condition at;
   const Point sizes = vec3(reference, "reference: expected S, b, c");
   at.alpha = alpha, at.beta = beta, at.mach = mach, at.core = core, at.turning = turning;
@@ -136,15 +154,12 @@ double factor_time(int n) {
 
 void bind_vortex_lattice(nb::module_& m) {
   m.attr("LATTICE_PANELS") = kMaxPanels;
-  m.def("vortex_lattice", &vortex_lattice, nb::arg("vertices"), nb::arg("row_start"),
-        nb::arg("row_surface"), nb::arg("trailing"), nb::arg("row_trailing"), nb::arg("control"),
-        nb::arg("middle"), nb::arg("normal"), nb::arg("normal_rate"), nb::arg("parity"),
-        nb::arg("mirror"), nb::arg("right"), nb::arg("center"), nb::arg("strip"),
-        nb::arg("strip_first"), nb::arg("strip_last"), nb::arg("strip_middle"), nb::arg("alpha"),
-        nb::arg("beta"), nb::arg("mach"), nb::arg("rate"), nb::arg("point"), nb::arg("reference"),
-        nb::arg("core"), nb::arg("turning"),
-        "Loads of a lattice and their derivatives to alpha, beta, phat, qhat, rhat and controls, "
-        "body axes; see core/host/include/alula/host/vortex_lattice.hpp.");
+  m.def("vortex_lattice", &vortex_lattice, nb::arg("panels"), nb::arg("alpha"), nb::arg("beta"),
+        nb::arg("mach"), nb::arg("rate"), nb::arg("point"), nb::arg("reference"), nb::arg("core"),
+        nb::arg("turning"),
+        "Loads of a lattice (alula.predict.panels.Panels) and their derivatives to alpha, "
+        "beta, phat, qhat, rhat and controls, body axes; see "
+        "core/host/include/alula/host/vortex_lattice.hpp.");
   m.def("lattice_factor_time", &factor_time, nb::arg("n"),
         "Processor time (s) of the factorization alone of a full matrix of order n.");
 }

@@ -89,16 +89,10 @@ def vortex_lattice(
     check_mesh(geometry, lattice.mesh)
     said += _finer(mesh, lattice.mesh)
     said += wakes_near(lattice, _stream(alpha, beta), numbers["core"], turning=wake == "turning")
+    sizes = np.array([reference.S, reference.b, reference.c])
     found = compiled.vortex_lattice(
-        lattice.vertices, lattice.row_start, lattice.row_surface,
-        lattice.trailing, lattice.row_trailing, lattice.control, lattice.middle,
-        lattice.normal, lattice.normal_rate, lattice.parity, lattice.mirror,
-        lattice.right, lattice.center, lattice.strip, lattice.strip_first, lattice.strip_last,
-        lattice.strip_wash,
-        alpha, beta, mach, np.zeros(3), point,
-        np.array([reference.S, reference.b, reference.c]), numbers["core"],
-        wake == "turning",
-    )  # fmt: skip
+        lattice, alpha, beta, mach, np.zeros(3), point, sizes, numbers["core"], wake == "turning"
+    )
     coefficients, derivatives = found["coefficients"][0], found["derivatives"].T
     if not (np.all(np.isfinite(coefficients)) and np.all(np.isfinite(derivatives))):
         raise refuse(
