@@ -10,7 +10,7 @@
 namespace alula {
 
 // An estimate of N variables (a multiple of four) and its covariance. What is no state has neither
-// slopes nor noise.
+// slopes nor noise. Not inlined: two kernels share what is long to compile.
 template <int N>
 struct FilteredMotion {
   static constexpr int kSeries = 10;  // terms: 1e-8 where a sample is as long as the fastest mode
@@ -20,7 +20,8 @@ struct FilteredMotion {
   // Takes up the innovations v, whose slopes by x are the rows of C and whose sensors have the
   // variances `noise`; NaN where there is no reading, which counts as a zero of variance one and
   // tells nothing. Writes S (outputs, outputs). False where a covariance has lost its rank.
-  bool update(int outputs, double (*C)[N], double* v, const double* noise, double* S) {
+  [[gnu::noinline]] bool update(int outputs, double (*C)[N], double* v, const double* noise,
+                                double* S) {
     alignas(32) double CP[kMeasuredOutputs][N];
     double left[kMeasuredOutputs][kMeasuredOutputs], e[kMeasuredOutputs];
     for (int o = 0; o < outputs; ++o) {
@@ -53,8 +54,8 @@ struct FilteredMotion {
 
   // On by dt. A: row i, the slopes of variable i's rate; rate: in the middle of the inputs; rise:
   // what the inputs' change from the first to the last adds to it; process: Q's diagonal.
-  void advance(double dt, const double (*A)[N], const double* rate, const double* rise,
-               const double* process) {
+  [[gnu::noinline]] void advance(double dt, const double (*A)[N], const double* rate,
+                                 const double* rise, const double* process) {
     // power = (A dt)^(k - 1) / k!; share: their sum, (exp(A dt) - 1) / (A dt); gain: what moves x
     alignas(32) double power[N][N] = {}, share[N][N] = {}, phi[N][N] = {}, next[N][N];
     double gain[N], ramp[N] = {};
@@ -121,27 +122,28 @@ void outputs_of(const VariationalPlan<axes>& plan, const double* x, const double
 
 }  // namespace detail
 
-// values: one per term. initial: the eight variables at the first sample, exactly known. process:
-// F F' of each of the eight, per second. noise: variance of each output's sensor. Writes the
-// predicted outputs y and innovations v (samples, outputs) and S (samples, outputs, outputs).
-// Returns the number of samples filtered: fewer than the maneuver has where the motion diverged.
+// values: one per term. initial: the eight variables as predicted for the first sample, which has
+// the process noise of one sample like any other: without it they could meet a reading exactly, and
+// the likelihood would have no bound as the sensor's noise goes to zero. process: F F' of each of
+// the eight, per second. noise: variance of each output's sensor. Writes the predicted outputs y
+// and innovations v (samples, outputs) and S (samples, outputs, outputs). Returns the number of
+// samples filtered: fewer than the maneuver has where the motion diverged.
 template <Axes axes>
 int filter_maneuver(const MeasuredManeuver& m, const double* values, const double* initial,
                     const double* process, const double* noise, double* y, double* v, double* S) {
   using K = Kernel<axes>;
   constexpr int N = K::kStates;
-  const VariationalPlan<axes> plan = variational_plan<axes>(m, values);
+  VariationalPlan<axes> plan = variational_plan<axes>(m, values);
+  for (double& pull : plan.pull) pull = 0.0;  // the filter corrects by its gain
   FilteredMotion<N> motion;
   double Q[N], C[kMeasuredOutputs][N], A[N][N], rate[N], rise[N], space[kManeuverInputs];
   for (int i = 0; i < N; ++i) {
     motion.x[i] = initial[K::state[i]];
     Q[i] = plan.is_state[i] ? process[K::state[i]] : 0.0;
+    motion.P[i][i] = m.samples > 1 ? (m.t[1] - m.t[0]) * Q[i] : 0.0;
   }
   Instant<axes> here;
-  const auto rates_at = [&](const double* u) {
-    evaluate(plan, motion.x, u, here);
-    correct(plan, motion.x, nullptr, here);
-  };
+  constexpr double way[3] = {0.0, 1.0, 0.5}, sign[3] = {-1.0, 1.0, 0.0};
   for (int sample = 0; sample < m.samples; ++sample) {
     if (!detail::flies(plan, motion.x)) return sample;
     const double* u = m.inputs + static_cast<long>(sample) * kManeuverInputs;
@@ -152,18 +154,19 @@ int filter_maneuver(const MeasuredManeuver& m, const double* values, const doubl
     if (!motion.update(m.outputs, C, v + row, noise, S + row * m.outputs)) return sample;
     if (sample + 1 == m.samples) break;
 
-    for (int i = 0; i < N; ++i) rise[i] = 0.0;
-    for (int end = 0; end < 2; ++end) {
-      rates_at(u + end * kManeuverInputs);
-      for (int i = 0; i < N; ++i)
-        rise[i] += (end == 1 ? 1.0 : -1.0) * here.y.rate[K::state[i]].value;
+    // The rates with the inputs at the beginning, at the end and in the middle.
+    for (double& r : rise) r = 0.0;
+    for (int part = 0; part < 3; ++part) {
+      evaluate(plan, motion.x, detail::between(m.inputs, kManeuverInputs, sample, way[part], space),
+               here);
+      correct(plan, motion.x, nullptr, here);
+      for (int i = 0; i < N; ++i) {
+        rate[i] = here.y.rate[K::state[i]].value;
+        rise[i] += sign[part] * rate[i];
+      }
     }
-    rates_at(detail::between(m.inputs, kManeuverInputs, sample, 0.5, space));
-    for (int i = 0; i < N; ++i) {
-      const auto& d = here.y.rate[K::state[i]];
-      rate[i] = d.value;
-      for (int j = 0; j < N; ++j) A[i][j] = d.slope_of(K::along_state[j]);
-    }
+    for (int i = 0; i < N; ++i)
+      for (int j = 0; j < N; ++j) A[i][j] = here.y.rate[K::state[i]].slope_of(K::along_state[j]);
     motion.advance(m.t[sample + 1] - m.t[sample], A, rate, rise, Q);
   }
   return m.samples;

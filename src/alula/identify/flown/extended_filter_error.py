@@ -3,8 +3,10 @@
 Jategaonkar 2006, ch. 5. The model is two Python functions, derivative and output, that take many
 states at once; slopes by central differences, so this takes some hundred times as long as formulas,
 which the core filters.
-The covariance follows the flown estimate, P = Phi P Phi' + (Phi Q Phi' + Q) dt / 2, from an initial
-state that is exact because it is estimated.
+The covariance follows the flown estimate, P = Phi P Phi' + (Phi Q Phi' + Q) dt / 2. The initial state
+is estimated and has the process noise of one sample, Q dt, as any prediction has: were it exact, it
+could meet a reading exactly, and the likelihood would grow without bound as that sensor's noise goes
+to zero.
 """
 
 from __future__ import annotations
@@ -170,7 +172,7 @@ def function_filter(
     z = np.where(good, record.outputs, 0.0)
     u, dt = record.inputs, record.dt
     v, y, S = np.empty((m, n, k)), np.empty((m, n, k)), np.empty((m, n, k, k))
-    x, P = x0, np.zeros((m, s, s))
+    x, P = x0, dt * Q
     one = np.eye(k)
     # slopes at the inputs' middle, and how the rate changes from the first to the last
     ahead = np.concatenate([around, np.zeros((2, s))])
