@@ -1,4 +1,5 @@
-// Output error: one maneuver with its model, flown for the sums of a Gauss-Newton step.
+// Output error and filter error: one maneuver with its model, flown for the sums of a Gauss-Newton
+// step, or filtered for its innovations.
 #include "alula/estimate/output_error.hpp"
 
 #include <nanobind/stl/tuple.h>
@@ -8,6 +9,7 @@
 #include <tuple>
 #include <vector>
 
+#include "alula/estimate/filter_error.hpp"
 #include "arrays.hpp"
 #include "bind.hpp"
 #include "lookups.hpp"
@@ -182,6 +184,36 @@ std::tuple<int, Numbers, Numbers> flight(const Maneuver& self, Vector values, Ve
   return {flown, y.numpy(), slopes.numpy()};
 }
 
+std::tuple<bool, Numbers, Numbers, Numbers> innovations(const Maneuver& self, Matrix values,
+                                                        Matrix initial, Matrix process,
+                                                        Matrix noise) {
+  const std::size_t count = values.shape(0);
+  require(static_cast<int>(values.shape(1)) == self.aero.table.term_count &&
+              initial.shape(1) == alula::kMotionVariables &&
+              process.shape(1) == alula::kMotionVariables &&
+              static_cast<int>(noise.shape(1)) == self.m.outputs,
+          "values (m, terms), initial (m, 8), process (m, 8), noise (m, outputs)");
+  require(initial.shape(0) == count && process.shape(0) == count && noise.shape(0) == count,
+          "one row of each for every filter");
+  const int n = self.m.samples, ny = self.m.outputs, filters = static_cast<int>(count);
+  Array<double> y({filters, n, ny}), v({filters, n, ny}), S({filters, n, ny, ny});
+  const alula::MeasuredManeuver m = self.view();
+  const auto pass = self.axes == kLongitudinal ? alula::filter_maneuver<kLongitudinal>
+                    : self.axes == kLateral    ? alula::filter_maneuver<kLateral>
+                                               : alula::filter_maneuver<kSix>;
+  bool whole = true;
+  {
+    nb::gil_scoped_release release;
+    for (int i = 0; i < filters && whole; ++i) {
+      const auto row = static_cast<std::size_t>(i);
+      const long rows = static_cast<long>(i) * n * ny;
+      whole = pass(m, &values(row, 0), &initial(row, 0), &process(row, 0), &noise(row, 0),
+                   y.data() + rows, v.data() + rows, S.data() + rows * ny) == n;
+    }
+  }
+  return {whole, v.numpy(), S.numpy(), y.numpy()};
+}
+
 }  // namespace
 
 void bind_output_error(nb::module_& m) {
@@ -207,6 +239,11 @@ void bind_output_error(nb::module_& m) {
       .def("flight", &flight, nb::arg("values"), nb::arg("initial"), nb::arg("bias"),
            nb::arg("sensitivity") = true,
            "Samples flown, outputs (n, outputs), their slopes (n, outputs, k), or (0, ...).")
+      .def("innovations", &innovations, nb::arg("values"), nb::arg("initial"), nb::arg("process"),
+           nb::arg("noise"),
+           "Of m extended filters: values (m, terms), initial and intensity F F' of the process\n"
+           "noise (m, 8), variance of the sensors (m, outputs). Whether all came to the end,\n"
+           "innovations, their covariances, predicted outputs.")
       .def_prop_ro("axes", [](const Maneuver& x) {
         return x.axes == kLongitudinal ? "longitudinal" : x.axes == kLateral ? "lateral" : "six";
       });

@@ -417,6 +417,13 @@ class ManeuverFit:
         Samples flown, outputs (n, outputs), their slopes (n, outputs, k), or (0, ...).
         """
 
+    def innovations(self, values: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], initial: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], process: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], noise: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> tuple[bool, NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64]]:
+        """
+        Of m extended filters: values (m, terms), initial and intensity F F' of the process
+        noise (m, 8), variance of the sensors (m, outputs). Whether all came to the end,
+        innovations, their covariances, predicted outputs.
+        """
+
     @property
     def axes(self) -> str: ...
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -13,13 +14,23 @@ from alula.identify import Reference
 from alula.identify.flown.extended_filter_error import (
     ExtendedFilter,
     FunctionModel,
+    function_filter,
     identify_extended_filter_error,
 )
-from alula.identify.flown.filter_error import STATES_OF, identify_flight_filter_error
-from alula.identify.flown.measured_maneuver import STATES, MeasuredManeuver
-from alula.identify.linear.filter_error import identify_filter_error
+from alula.identify.flown.filter_error import (
+    STATES_OF,
+    _record,
+    core_filter,
+    flight_functions,
+    identify_flight_filter_error,
+)
+from alula.identify.flown.measured_maneuver import OUTPUTS, STATES, MeasuredManeuver
+from alula.identify.flown.start import measured_coefficients
+from alula.identify.likelihood.innovations import InnovationLikelihood
+from alula.identify.linear.filter_error import FilterError, identify_filter_error
 from alula.identify.linear.model import linear_model, sample
 from alula.identify.linear.record import Unknowns, linear_record
+from identify.flown_maneuvers import LATERAL, LONGITUDINAL, TRUTH, every_axis, flown
 
 DT = 0.04
 
@@ -85,6 +96,115 @@ def test_agrees_with_the_linear_filter():
         assert extended[name].se_white == pytest.approx(linear[name].se_white, rel=0.02)
     with pytest.raises(BadInput, match="no_start"):
         identify_extended_filter_error(function, [record], start={"Lp": -2.0})
+
+
+@pytest.mark.parametrize("form", ["linear", "functions"])
+def test_the_likelihood_is_bounded_where_a_sensor_is_perfect(form):
+    """An initial state that meets the first reading exactly, and a sensor's noise a thousand times
+    smaller, both far below the process noise: nothing that data could tell apart. From an exact
+    initial state the cost would fall by ln(1000) = 6.9, and the state's error bar with the noise.
+    """
+    model, record = roll()
+    names = Unknowns(model, [record], (), {}, initial=True)
+    first = {"Lp": -3.0, "Lda": -12.0, "p(0)[a]": float(record.outputs[0, 0])}
+    if form == "linear":
+        problem = FilterError(model, [record], names, ["p"], "varying", {}, first)
+    else:
+        problem = ExtendedFilter([roll_function()], [record], names, ["p"], {}, first)
+    at = problem.first.copy()
+    at[list(problem.names).index("F_p")] = np.log(0.2)  # 0.04 in one sample
+    cost, error = [], []
+    for sigma in (1e-5, 1e-8):
+        at[list(problem.names).index("sigma_p")] = np.log(sigma)
+        point = InnovationLikelihood(problem.run)(at, True)
+        assert point is not None
+        cost.append(point.cost)
+        error.append(point.information[2, 2] ** -0.5)
+    assert cost[1] == pytest.approx(cost[0], abs=1e-3)  # n (sigma / 0.04)^2
+    assert error == pytest.approx([0.04, 0.04], rel=0.1)  # what one sample's noise leaves
+
+
+def test_a_maneuver_is_filtered_with_its_own_parameters_only():
+    """The same derivatives as with every filter run on every maneuver."""
+    model, record = roll()
+    records = [record, replace(roll(seed=1, n=150)[1], id="b")]
+    names = Unknowns(model, records, (), {}, initial=True)
+    first = {"Lp": -2.0, "Lda": -8.0}
+    problem = ExtendedFilter([roll_function()] * 2, records, names, ["p"], {}, first)
+    counts = []
+
+    def every(members):
+        runs = problem.run(members) or []
+        counts.append([len(r.v) for r in runs])
+        place = [np.zeros(len(members), dtype=int) for _ in runs]
+        for p, r in zip(place, runs, strict=True):
+            p[r.members] = np.arange(len(r.v))
+        return [
+            replace(r, v=r.v[p], S=r.S[p], y=r.y[p], members=None)
+            for p, r in zip(place, runs, strict=True)
+        ]
+
+    lean = InnovationLikelihood(problem.run)(problem.first, True)
+    whole = InnovationLikelihood(every)(problem.first, True)
+    assert counts == [[11, 11]]  # of 13: Lp Lda F sigma and one initial state, to either side
+    np.testing.assert_allclose(lean.gradient, whole.gradient, rtol=1e-12)
+    np.testing.assert_allclose(lean.information, whole.information, rtol=1e-9, atol=1e-12)
+
+
+STABILITY = {
+    "CD": "1 + CL^2", "CL": "1 + alpha + qhat + de", "Cm": "1 + alpha + qhat + de + abs(alpha)",
+    "CY": "beta + dr", "Cl": "beta + phat + rhat + da", "Cn": "beta + rhat + (beta - 0.01)+^2",
+}  # fmt: skip
+CASES = {
+    "longitudinal": (LONGITUDINAL, ("V", "alpha", "q", "theta"), ("V", "alpha", "q", "ax", "az")),
+    "two states": (LONGITUDINAL, ("alpha", "q"), ("alpha", "q", "theta", "az", "qdot")),
+    "lateral": (LATERAL, ("beta", "p", "r", "phi"), ("beta", "p", "r", "phi", "ay", "rdot")),
+    "other order": (LATERAL, ("r", "beta", "p"), ("ay", "p", "r", "beta")),
+    "six": (LONGITUDINAL | LATERAL, STATES, OUTPUTS),
+    "stability axes": (STABILITY, STATES, OUTPUTS),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_the_core_filters_as_the_functions_do(case):
+    """Every kernel of the core against the equations in Python, with a reading in ten missing,
+    uneven parameters side by side. Slopes by differences of 1e-6 are good to 1e-8 of each size.
+    """
+    models, states, outputs = CASES[case]
+    m = flown(every_axis, seconds=4.0, seed=5)
+    m = replace(m, coefficients=measured_coefficients(m))
+    random = np.random.default_rng(0)
+    readings = {n: np.where(random.random(len(v)) < 0.1, np.nan, v) for n, v in m.outputs.items()}
+    m = replace(m, outputs=readings)
+    functions = flight_functions(m, models, states, outputs)
+    typical = {"CD_0": 0.03, "CD_CL2": 0.05, "CL_0": 0.25, "CL_alpha": 5.0, "CL_q": 6.0}
+    values = np.array([TRUTH.get(n, typical.get(n, 0.1)) for n in functions.parameters])
+    values = values * (1.0 + 0.05 * random.standard_normal((3, len(values))))
+    x0 = np.array([m.motion[s][0] for s in states]) + 0.01 * random.standard_normal(
+        (3, len(states))
+    )
+    intensity = random.uniform(1e-5, 1e-3, (3, len(states)))
+    R = random.uniform(1e-6, 1e-3, (3, len(outputs)))
+    core = core_filter(m, models, functions)(values, x0, intensity, R)
+    slow = function_filter(functions, _record(m, outputs), values, x0, intensity, R)
+    assert core is not None
+    assert slow is not None
+    size = np.sqrt(np.einsum("mnkk->mnk", slow.S))
+    assert (np.abs(slow.v) > 0.1 * size).any()
+    np.testing.assert_array_less(np.abs(core.v - slow.v), 1e-6 * size + 1e-9)
+    np.testing.assert_array_less(np.abs(core.y - slow.y), 1e-6 * size + 1e-9)
+    scale = size[:, :, :, None] * size[:, :, None, :]
+    np.testing.assert_array_less(np.abs(core.S - slow.S), 1e-6 * scale)
+
+
+def test_a_motion_that_diverges_has_no_innovations():
+    m = flown(every_axis, seconds=4.0, seed=5)
+    functions = flight_functions(m, LONGITUDINAL | LATERAL, STATES, ("V",))
+    values = np.array([[TRUTH[n] for n in functions.parameters]])
+    values[0, functions.parameters.index("Cm_alpha")] = 400.0
+    x0 = np.array([[m.motion[s][0] for s in STATES]])
+    run = core_filter(m, LONGITUDINAL | LATERAL, functions)
+    assert run(values, x0, np.zeros((1, 8)), np.ones((1, 1))) is None
 
 
 TRUE = {

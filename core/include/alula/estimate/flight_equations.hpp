@@ -29,6 +29,17 @@ struct MotionRates {
   D ax, ay, az;
 };
 
+// The one of them that is measured as `output`, an acceleration.
+template <class D>
+const D& acceleration(const MotionRates<D>& y, int output) {
+  return output == kOutAx     ? y.ax
+         : output == kOutAy   ? y.ay
+         : output == kOutAz   ? y.az
+         : output == kOutPdot ? y.rate[kMotionP]
+         : output == kOutQdot ? y.rate[kMotionQ]
+                              : y.rate[kMotionR];
+}
+
 namespace detail {
 // The sine or cosine of x, by its value f and its derivative there.
 inline double function_of(double, double f, double) { return f; }

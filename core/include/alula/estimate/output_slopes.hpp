@@ -82,12 +82,7 @@ class OutputSlopes {
   double value(int o, const double* x, const double* u, const Instant<axes>& here) {
     const int which = plan_.m->output[o];
     if (which < kMotionVariables) return state_[o] < 0 ? u[kInMotion + which] : x[state_[o]];
-    const auto& d = which == kOutAx     ? here.y.ax
-                    : which == kOutAy   ? here.y.ay
-                    : which == kOutAz   ? here.y.az
-                    : which == kOutPdot ? here.y.rate[kMotionP]
-                    : which == kOutQdot ? here.y.rate[kMotionQ]
-                                        : here.y.rate[kMotionR];
+    const auto& d = acceleration(here.y, which);
     for (int i = 0; i < K::kDirections; ++i) along_[i][o] = d.slope_of(i);
     return d.value;
   }

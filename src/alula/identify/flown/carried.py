@@ -10,11 +10,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Literal
 
 import numpy as np
 
 from alula.base.arrays import Array, frozen
+from alula.identify.flown.core_maneuver import formula_model
 from alula.identify.flown.fit import Covariance
 from alula.identify.flown.measured_maneuver import MeasuredManeuver
 from alula.identify.flown.output_likelihood import likelihood_of
@@ -22,7 +22,7 @@ from alula.identify.flown.problem import FlightProblem, Setting
 from alula.identify.likelihood.parameters import Prior
 from alula.identify.result import Identification
 from alula.identify.trust.verdict import verdict
-from alula.model import Reference, aero_model, parse, reference_scales
+from alula.model import parse, reference_scales
 
 Shifts = Mapping[str, Mapping[str, Array]]  # by maneuver and output: (n,)
 _NORMAL = 1.96  # what is added counts as known
@@ -48,13 +48,8 @@ def carried(
     learn = [m for m in maneuvers if not m.maneuver.held_out]
     if not shifts or not len(theta) or not np.isfinite(theta).all():
         return result
-    axes: Literal["body", "stability"] = "stability" if {"CD", "CL"} & models.keys() else "body"
-    reference = learn[0].reference
     values = {t.name(c): 0.0 for c, formula in models.items() for t in parse(formula)}
-    model = aero_model(
-        "carried", models, {**values, **setting.fixed},
-        Reference(reference.S, reference.b, reference.c), axes=axes,
-    )  # fmt: skip
+    model = formula_model(models, {**values, **setting.fixed}, learn[0].reference)
     problem = FlightProblem(learn, model, setting)
     known = None if noise is None else np.array([noise[n] for n in setting.outputs]) ** 2
     likelihood = likelihood_of(problem, known, covariance == "full")

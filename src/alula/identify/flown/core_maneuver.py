@@ -1,16 +1,20 @@
-"""One maneuver as the core flies it: its inputs in rows, and where parameters go."""
+"""One maneuver as the core flies and filters it: its inputs in rows, and where parameters go."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from alula.base.arrays import Array
-from alula.identify.flown.measured_maneuver import CONTROLS, STATES, MeasuredManeuver
-from alula.model import AXES, AeroModel
+from alula.core import core
+from alula.identify.coefficients import Reference
+from alula.identify.flown.measured_maneuver import CONTROLS, OUTPUTS, STATES, MeasuredManeuver
+from alula.model import AXES, AeroModel, aero_model, parse, to_table
+from alula.model import Reference as Lengths
 
 Columns = NDArray[np.int64]
 # The outputs that tell a coefficient of force.
@@ -47,6 +51,44 @@ class ManeuverInCore:
     def arguments(self, theta: Array) -> tuple[Array, Array, Array]:
         """Values of the terms, initial state (8,), biases."""
         return self.values.at(theta), self.initial.at(theta), self.bias.at(theta)
+
+
+def formula_model(
+    models: Mapping[str, str], values: Mapping[str, float], reference: Reference
+) -> AeroModel:
+    """The model of these formulas by coefficient; its axes are theirs. values: by term at least."""
+    axes: Literal["body", "stability"] = "stability" if {"CD", "CL"} & models.keys() else "body"
+    names = {t.name(c) for c, formula in models.items() for t in parse(formula)}
+    chosen = {n: v for n, v in values.items() if n in names}
+    lengths = Lengths(reference.S, reference.b, reference.c)
+    return aero_model("of the maneuvers", models, chosen, lengths, axes=axes)
+
+
+def in_core(
+    m: MeasuredManeuver,
+    model: AeroModel,
+    states: Sequence[str],
+    outputs: Sequence[str],
+    pull: Mapping[str, float] | None = None,
+    substeps: int = 1,
+) -> Any:
+    """The core's `ManeuverFit`; no parameters named yet. Others as `Setting` has them."""
+    r = m.reference
+    return core.ManeuverFit(
+        to_table(model),
+        model.axes == "stability",
+        np.array([r.S, r.b, r.c]),
+        np.array([m.mass, m.gravity]),
+        np.ascontiguousarray(m.inertia),
+        np.ascontiguousarray(m.arm),
+        [STATES.index(name) for name in states],
+        np.array([float((pull or {}).get(name, 0.0)) for name in STATES]),
+        [OUTPUTS.index(name) for name in outputs],
+        np.ascontiguousarray(m.t),
+        input_rows(m, model),
+        np.column_stack([m.outputs[name] for name in outputs]),
+        substeps,
+    )
 
 
 def input_rows(m: MeasuredManeuver, model: AeroModel) -> Array:

@@ -1,22 +1,29 @@
 """Filter error for the equations of motion with any formulas of the model grammar.
 
-The same rigid-body equations as in the core (Dittrich 2016, Eq. (2.61) to (2.66)), for many states
-and parameter vectors at once in Python: slower, and said so. What is not a state is taken as
-measured, and so are coefficients without a formula. Turbulence enters as white process noise of the
-states named.
+The rigid-body equations (Dittrich 2016, Eq. (2.61) to (2.66)), filtered in the core with exact
+slopes; the same equations as Python functions serve the first values, and check the core. What is
+not a state is taken as measured, and so are coefficients without a formula. Turbulence enters as
+white process noise of the states named.
 """
 
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from alula.base.arrays import Array, frozen
 from alula.base.messages import refuse
-from alula.identify.flown.extended_filter_error import FunctionModel, identify_extended_filter_error
+from alula.identify.flown.core_maneuver import formula_model, in_core
+from alula.identify.flown.extended_filter_error import (
+    FunctionModel,
+    Pass,
+    identify_extended_filter_error,
+)
 from alula.identify.flown.measured_maneuver import OUTPUTS, STATES, MeasuredManeuver
 from alula.identify.flown.start import start_values
+from alula.identify.likelihood.innovations import Innovations
 from alula.identify.likelihood.optimizer import Algorithm
 from alula.identify.likelihood.parameters import Prior
 from alula.identify.linear.record import LinearRecord
@@ -67,11 +74,15 @@ def identify_flight_filter_error(
     learn = [m for m in maneuvers if not m.maneuver.held_out]
     first = start_values(learn, models, {**(start or {}), **(fixed or {})}) if learn else {}
     enough = {n: v for c, text in models.items() for n, v in reference_scales(c, text).items()}
-    flown = [flight_functions(m, models, states, outputs) for m in learn]
+    records = [_record(m, outputs) for m in maneuvers]
+    functions = [flight_functions(m, models, states, outputs) for m in learn]
+    flown = [
+        replace(f, filter=core_filter(m, models, f)) for m, f in zip(learn, functions, strict=True)
+    ]
     constants = [constant_name(c) for c in models]
     return identify_extended_filter_error(
         flown,
-        [_record(m, outputs) for m in maneuvers],
+        records,
         start=first,
         noisy=noisy,
         own=() if common_constant else [c for c in constants if c in flown[0].parameters],
@@ -83,6 +94,23 @@ def identify_flight_filter_error(
         truth=truth,
         method="filter error",
     )
+
+
+def core_filter(m: MeasuredManeuver, models: Mapping[str, str], functions: FunctionModel) -> Pass:
+    """The core's extended filter over the maneuver; what it takes as `functions` has it."""
+    names, states = functions.parameters, functions.states
+    model = formula_model(models, dict.fromkeys(names, 0.0), m.reference)
+    fit = in_core(m, model, states, functions.outputs)
+    terms = [names.index(n) for n in model.names]
+    places = [STATES.index(s) for s in states]
+
+    def run(values: Array, x0: Array, intensity: Array, R: Array) -> Innovations | None:
+        eight = np.zeros((2, len(values), len(STATES)))
+        eight[0, :, places], eight[1, :, places] = x0.T, intensity.T
+        whole, v, S, y = fit.innovations(np.ascontiguousarray(values[:, terms]), *eight, R)
+        return Innovations(v, S, y) if whole else None
+
+    return run
 
 
 def flight_functions(

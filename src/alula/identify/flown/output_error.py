@@ -19,6 +19,7 @@ import numpy as np
 from alula.base.arrays import Array
 from alula.base.messages import Message, note, refuse
 from alula.identify.equation_error.task import need_models
+from alula.identify.flown.core_maneuver import formula_model
 from alula.identify.flown.fit import Covariance, OutputErrorFit, fit_output_error
 from alula.identify.flown.measured_maneuver import MeasuredManeuver
 from alula.identify.flown.output_likelihood import likelihood_of
@@ -33,7 +34,7 @@ from alula.identify.trust.control_sign import signs_checked
 from alula.identify.trust.feedback import Feedback, distrusted, feedback, warn_of_feedback
 from alula.identify.trust.identifiability import UNCERTAIN
 from alula.identify.typical import typical_magnitude, unit
-from alula.model import AeroModel, Reference, aero_model, parse, reference_scales
+from alula.model import AeroModel, parse, reference_scales
 
 StateSet = Literal["longitudinal", "lateral", "six"]
 # Standard errors (m/s; rad, rad/s) at which an initial state is resolved, whatever its value.
@@ -102,7 +103,7 @@ def identify_output_error(
         substeps=substeps,
     )
     values = {**start_values(learn, models, {**(fixed or {}), **(start or {})})}
-    model = _model(models, values, learn[0])
+    model = formula_model(models, values, learn[0].reference)
     fit = fit_output_error(
         learn, model, setting, noise=noise, bounds=bounds, priors=priors, algorithm=algorithm,
         covariance=covariance,
@@ -170,16 +171,6 @@ def _fitted(m: MeasuredManeuver, y: Array, outputs: Sequence[str]) -> list[Fitte
         Fitted(name, m.maneuver.id, m.t, m.outputs[name], y[:, o], m.maneuver.held_out)
         for o, name in enumerate(outputs)
     ]
-
-
-def _model(
-    models: Mapping[str, str], values: Mapping[str, float], m: MeasuredManeuver
-) -> AeroModel:
-    axes: Literal["body", "stability"] = "stability" if {"CD", "CL"} & models.keys() else "body"
-    names = {t.name(c) for c, formula in models.items() for t in parse(formula)}
-    reference = Reference(m.reference.S, m.reference.b, m.reference.c)
-    chosen = {n: v for n, v in values.items() if n in names}
-    return aero_model("output error", models, chosen, reference, axes=axes)
 
 
 def _followed(fit: OutputErrorFit, models: Mapping[str, str]) -> dict[str, tuple[Feedback, ...]]:

@@ -14,11 +14,10 @@ import numpy as np
 
 from alula.base.arrays import Array
 from alula.base.messages import refuse
-from alula.core import core
-from alula.identify.flown.core_maneuver import ManeuverInCore, Spread, input_rows
+from alula.identify.flown.core_maneuver import ManeuverInCore, Spread, in_core
 from alula.identify.flown.measured_maneuver import CONTROLS, OUTPUTS, STATES, MeasuredManeuver
 from alula.identify.typical import constant_name
-from alula.model import AeroModel, to_table
+from alula.model import AeroModel
 
 STATE_SETS: Mapping[str, tuple[str, ...]] = {
     "longitudinal": ("V", "alpha", "theta", "q"),
@@ -214,23 +213,7 @@ class FlightProblem:
                 "Fix some, or take terms out.",
             )
         local = {c: j for j, c in enumerate(used)} | {-1: -1}
-        r = m.reference
-        pull = np.array([float(s.stabilize.get(name, 0.0)) for name in STATES])
-        fit = core.ManeuverFit(
-            to_table(self.model),
-            self.model.axes == "stability",
-            np.array([r.S, r.b, r.c]),
-            np.array([m.mass, m.gravity]),
-            np.ascontiguousarray(m.inertia),
-            np.ascontiguousarray(m.arm),
-            [STATES.index(name) for name in s.states],
-            pull,
-            [OUTPUTS.index(name) for name in s.outputs],
-            np.ascontiguousarray(m.t),
-            input_rows(m, self.model),
-            np.column_stack([m.outputs[name] for name in s.outputs]),
-            s.substeps,
-        )
+        fit = in_core(m, self.model, s.states, s.outputs, s.stabilize, s.substeps)
         fit.columns(
             len(used),
             [local[c] for c in self._terms[i]],

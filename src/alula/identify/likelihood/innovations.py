@@ -15,11 +15,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from alula.base.arrays import Array
 from alula.identify.likelihood.optimizer import Point
 from alula.identify.likelihood.parameters import Whitened
 
+Places = NDArray[np.intp]
 STEP = 1e-3  # standard errors; the first time, when none are known, 1e-4 of the value
 HUGE = 1e12
 
@@ -29,11 +31,13 @@ class Innovations:
     """Of m parameter vectors: v (m, n, k), S (m, n or 1, k, k), predicted outputs y (m, n, k).
 
     Where nothing was measured, v is zero and S that of a measurement apart with variance 1.
+    members: which of the vectors asked for these are, all by default; the others go as the first.
     """
 
     v: Array
     S: Array
     y: Array
+    members: Places | None = None
 
 
 # Parameters (m, free) -> innovations of every maneuver; None where the filter diverges.
@@ -56,9 +60,11 @@ class InnovationLikelihood:
         if runs is None:
             return None
         gradient, information = np.zeros(len(p)), np.zeros((len(p), len(p)))
-        for block in _rows(runs, h):
-            gradient -= block.sensitivity.T @ block.residual
-            information += block.sensitivity.T @ block.sensitivity
+        for r in runs:
+            columns, blocks = _rows(r, h)
+            for X, e in blocks:
+                gradient[columns] -= X.T @ e
+                information[np.ix_(columns, columns)] += X.T @ X
         diagonal = np.diag(information)
         known = np.where(diagonal > 0.0, diagonal, np.inf)
         self.width = np.where(diagonal > 0.0, 1.0 / np.sqrt(known), h / STEP)
@@ -67,7 +73,14 @@ class InnovationLikelihood:
     def blocks(self, p: Array) -> list[Whitened]:
         """The likelihood at p as a regression, see `_rows`."""
         h, runs = self._around(p)
-        return [] if runs is None else _rows(runs, h)
+        out = []
+        for r in runs or []:
+            columns, blocks = _rows(r, h)
+            for X, e in blocks:
+                whole = np.zeros((len(e), len(p)))
+                whole[:, columns] = X
+                out.append(Whitened(whole, e))
+        return out
 
     def _around(self, p: Array) -> tuple[Array, Sequence[Innovations] | None]:
         floor = 1e-9 * np.maximum(np.abs(p), 1e-3)
@@ -102,31 +115,33 @@ def _cost(runs: Sequence[Innovations]) -> float:
     return total
 
 
-def _rows(runs: Sequence[Innovations], h: Array) -> list[Whitened]:
-    """Blocks whose X'X is the information and X'residual minus the gradient, exactly.
+def _rows(r: Innovations, h: Array) -> tuple[Places, list[tuple[Array, Array]]]:
+    """The parameters that concern a maneuver, and blocks X (n, them), residual (n,) of it.
 
-    With S = L L' and e = L^-1 v, the innovations give one block for each of e; their covariance
-    gives one for each pair a <= b, e_a e_b minus its expectation over its standard deviation, with
+    The sum of X'X is the information and that of X'residual minus the gradient, exactly. With
+    S = L L' and e = L^-1 v, the innovations give one block for each of e; their covariance gives
+    one for each pair a <= b, e_a e_b minus its expectation over its standard deviation, with
     (L^-1 dS L^-T)_ab as regressor: mean 0, variance 1, white if the model is right.
     """
-    out: list[Whitened] = []
-    j = len(h)
-    for r in runs:
-        n, k = r.v.shape[1:]
-        L = np.linalg.cholesky(r.S[0])
-        inverse = np.linalg.inv(L)
-        dv = (r.v[1 : j + 1] - r.v[j + 1 :]) / (2.0 * h)[:, None, None]
-        dS = (r.S[1 : j + 1] - r.S[j + 1 :]) / (2.0 * h)[:, None, None, None]
-        inverse_n = np.broadcast_to(inverse, (n, k, k))
-        e = np.einsum("nab,nb->na", inverse_n, r.v[0])
-        de = np.einsum("nab,jnb->naj", inverse_n, dv, optimize=True)
-        turn = inverse @ dS @ np.swapaxes(inverse, -1, -2)  # (j, n or 1, k, k)
-        out += [Whitened(-de[:, a], e[:, a]) for a in range(k)]
-        for a in range(k):
-            for b in range(a, k):
-                column = np.broadcast_to(turn[:, :, a, b].T, (n, j))
-                if a == b:
-                    out.append(Whitened(column / 2**0.5, (e[:, a] ** 2 - 1.0) / 2**0.5))
-                else:
-                    out.append(Whitened(column.copy(), e[:, a] * e[:, b]))
-    return out
+    n, k = r.v.shape[1:]
+    place = np.zeros(2 * len(h) + 1, dtype=np.intp)
+    place[... if r.members is None else r.members] = np.arange(len(r.v))
+    up, down = place[1 : len(h) + 1], place[len(h) + 1 :]
+    columns = np.flatnonzero((up > 0) | (down > 0))
+    up, down, j, apart = up[columns], down[columns], len(columns), 2.0 * h[columns]
+    inverse = np.linalg.inv(np.linalg.cholesky(r.S[0]))
+    dv = (r.v[up] - r.v[down]) / apart[:, None, None]
+    dS = (r.S[up] - r.S[down]) / apart[:, None, None, None]
+    inverse_n = np.broadcast_to(inverse, (n, k, k))
+    e = np.einsum("nab,nb->na", inverse_n, r.v[0])
+    de = np.einsum("nab,jnb->naj", inverse_n, dv, optimize=True)
+    turn = inverse @ dS @ np.swapaxes(inverse, -1, -2)  # (j, n or 1, k, k)
+    out = [(-de[:, a], e[:, a]) for a in range(k)]
+    for a in range(k):
+        for b in range(a, k):
+            column = np.broadcast_to(turn[:, :, a, b].T, (n, j))
+            if a == b:
+                out.append((column / 2**0.5, (e[:, a] ** 2 - 1.0) / 2**0.5))
+            else:
+                out.append((column, e[:, a] * e[:, b]))
+    return columns, out

@@ -5,8 +5,9 @@ per square root of a second) enters the states, white measurement noise of stand
 each output. A Kalman filter predicts every sample from those before; its innovations are white if
 the parameters are right (Maine and Iliff 1981; Jategaonkar 2006, ch. 5). F and sigma are estimated
 along with all else, on a logarithmic scale. The gain is that of the steady state (Riccati), or
-varies with time from an initial state that is exact because it is estimated; the latter also
-bridges missing samples.
+varies with time; the latter also bridges missing samples. It begins with an estimated state that
+has the process noise of one sample, as any prediction has: were it exact, it could meet a reading
+exactly, and the likelihood would grow without bound as that sensor's noise goes to zero.
 """
 
 from __future__ import annotations
@@ -133,7 +134,7 @@ class FilterError(NoisyProblem):
         v, y = np.empty((n, len(values), k)), np.empty((n, len(values), k))
         S = np.empty((n if self.varying else 1, len(values), k, k))
         x = x0
-        P = np.zeros_like(Q)
+        P = Q
         if not self.varying:
             P = steady_covariance(step.phi, m.C, Q, R)
             if not np.isfinite(P).all():

@@ -69,16 +69,21 @@ class NoisyProblem(ABC):
         """
 
     def run(self, members: Array) -> list[Innovations] | None:
-        """Innovations of every maneuver for m parameter vectors (m, k)."""
+        """Innovations of every maneuver for m parameter vectors (m, k).
+
+        A maneuver is filtered only with those that differ from the first in what concerns it.
+        """
         intensity = np.zeros((len(members), self.states))
         intensity[:, self.driven], R = self.noises(members)
         out = []
         for i in range(len(self.records)):
             values, x0 = self.unknowns.of(i, members[:, : self.free])
-            found = self.filtered(i, values, x0, intensity, R)
+            own = np.hstack([values, x0, intensity, R])
+            at = np.append(0, np.flatnonzero((own != own[0]).any(axis=1)))
+            found = self.filtered(i, values[at], x0[at], intensity[at], R[at])
             if found is None:
                 return None
-            out.append(found)
+            out.append(replace(found, members=at))
         return out
 
     def vector(self, by_name: Mapping[str, float], default: Array) -> Array:
