@@ -294,7 +294,8 @@ def filter_speed(quick: bool) -> tuple[str, bool]:
 
     if not cases.available():
         return f"peers not found in {cases.BASELINES}", False
-    rows = bench.filter_rows(6 if quick else 16)
+    # Enough rounds that each meets a quiet moment of a shared machine: few flatter the shorter run.
+    rows = bench.filter_rows(6 if quick else 40)
     least = {
         ("ukf_core_v3", "ukf_numba"): 3.0,
         ("ukf_core", "ukf_numba"): 2.0,
@@ -303,8 +304,11 @@ def filter_speed(quick: bool) -> tuple[str, bool]:
         ("ekf_core_v3", "ekf_numba"): 1.0,
         ("ekf_core", "ekf_numba"): 1.0,
     }
-    got = "; ".join(f"{r['name']} {r['ratio']:.2f} x {r['peer']}" for r in rows)
-    fast = all(r["ratio"] >= least[r["name"], r["peer"]] for r in rows)
+    got = "; ".join(
+        f"{r['name']} {r['ratio']:.2f} ({r['ratio_median']:.2f} by medians) x {r['peer']}"
+        for r in rows
+    )
+    fast = all(r["ratio"] >= least.get((r["name"], r["peer"]), 0.0) for r in rows)
     still = all(r["allocations"] == 0 for r in rows)
     return f"{got}; allocations {'none' if still else 'not none'}", fast and still
 
