@@ -60,10 +60,14 @@ class Checked:
 
 
 def check_project(
-    path: str, only: Sequence[str] = (), progress: Progress = lambda _: None
+    path: str,
+    only: Sequence[str] = (),
+    progress: Progress = lambda _: None,
+    logs: Sequence[str] = (),
 ) -> Checked:
     """Read everything a project names and look through it. only: maneuver ids, all if empty.
 
+    logs: ids; the others are not read, and their maneuvers are none of the result's; all if empty.
     Raises BadInput, with every message there is, for what cannot be used.
     """
     project = load_project(path)
@@ -79,6 +83,8 @@ def check_project(
     loaded = _loaded(project, aircraft)
     for formula in project.identify.models.values():
         parse(formula)  # said now, not after the logs were reconstructed
+    if logs:
+        project = _narrowed(project, logs)
     progress("reading logs")
     flights = read_all(project)
     found, said = maneuvers(project, flights)
@@ -87,6 +93,25 @@ def check_project(
     messages += [m for other in loaded.values() for m in other.messages]
     cards = tuple(log_card(flight, found) for flight in flights.values())
     return Checked(project, aircraft, flights, chosen, cards, tuple(messages), loaded)
+
+
+def _narrowed(project: Project, logs: Sequence[str]) -> Project:
+    """The project with these logs alone."""
+    known = [log.id for log in project.logs]
+    for name in logs:
+        if name not in known:
+            raise refuse(
+                "unknown_log",
+                where="--log",
+                expected="one of " + ", ".join(known),
+                found=f"'{name}'",
+                do="Name a log of the project file.",
+            )
+    kept = {
+        "logs": [log for log in project.logs if log.id in logs],
+        "maneuvers": [m for m in project.maneuvers if m.log in logs],
+    }
+    return project.model_copy(update=kept)
 
 
 def _aircraft(file: Path, where: str) -> Aircraft:
