@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -16,6 +17,7 @@ from alula.campaign.named import named
 from alula.flight import Flight, Maneuver, Motion, SourceFile
 from alula.logs.card import LogCard, log_card
 from alula.logs.maneuvers import maneuvers
+from alula.logs.own_channels import own_channels
 from alula.logs.reader import read_all
 from alula.model import parse
 from alula.reconstruct.recorded import recorded_motion
@@ -24,6 +26,7 @@ Progress = Callable[[str], None]
 
 # Codes of warnings after which a result would be wrong, not only less certain.
 CONTRADICTIONS = ("control_sign", "sign_contradiction")
+_WORD = re.compile(r"[A-Za-z_]\w*")
 
 
 @dataclass(frozen=True)
@@ -89,10 +92,21 @@ def check_project(
     flights = read_all(project)
     found, said = maneuvers(project, flights)
     chosen = named(project, found, only)
-    messages = [*aircraft.messages, *said, *_signs(flights, chosen, aircraft)]
+    messages = own_channels(project, taken_names(project, [aircraft, *loaded.values()]))
+    messages += [*aircraft.messages, *said, *_signs(flights, chosen, aircraft)]
     messages += [m for other in loaded.values() for m in other.messages]
     cards = tuple(log_card(flight, found) for flight in flights.values())
     return Checked(project, aircraft, flights, chosen, cards, tuple(messages), loaded)
+
+
+def taken_names(project: Project, aircraft: Sequence[Aircraft]) -> set[str]:
+    """Names that engines, sensors, controls, formulas and options of the methods take."""
+    found = {word for text in project.identify.models.values() for word in _WORD.findall(text)}
+    found |= set(_WORD.findall(repr(project.identify.options)))
+    found |= {*project.reconstruct.sensors, *project.navigate.sensors}
+    for one in aircraft:
+        found |= {e.channel for e in one.engines if e.channel} | {*one.sensors, *one.control_signs}
+    return found
 
 
 def _narrowed(project: Project, logs: Sequence[str]) -> Project:
