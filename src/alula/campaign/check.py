@@ -13,6 +13,7 @@ import numpy as np
 from alula.aircraft import Aircraft, control_sign_check, load_aircraft
 from alula.base.messages import Message, note, refuse
 from alula.base.project import Project, load_project
+from alula.campaign.envelope import outside_envelope
 from alula.campaign.named import named
 from alula.flight import Flight, Maneuver, Motion, SourceFile
 from alula.logs.card import LogCard, log_card
@@ -95,6 +96,10 @@ def check_project(
     messages = own_channels(project, taken_names(project, [aircraft, *loaded.values()]))
     messages += [*aircraft.messages, *said, *_signs(flights, chosen, aircraft)]
     messages += [m for other in loaded.values() for m in other.messages]
+    for log in project.logs:
+        flown = [m for m in chosen if m.log == log.id]
+        plane = loaded.get(log.id, aircraft)
+        messages += outside_envelope(flights[log.id], flown, plane, project.channels_of(log))
     cards = tuple(log_card(flight, found) for flight in flights.values())
     return Checked(project, aircraft, flights, chosen, cards, tuple(messages), loaded)
 
