@@ -20,6 +20,7 @@ from alula.base.messages import Message
 from alula.base.project import ChannelSpec, LogSpec
 from alula.base.units import G0, to_si
 from alula.flight import Channel
+from alula.logs.changes import at, integral, together
 
 UNITS = ("m/s", "kt", "km/h", "ft/s")
 FAR = 0.45  # of the ratio's logarithm: 1.57; kt for m/s is 1.94, an upwash or a wind less
@@ -98,24 +99,21 @@ def _unit(ratio: float, scale: float) -> str:
 def _accounts(t: Array, V: Array, channels: Mapping[str, Channel]) -> Iterator[tuple[str, float]]:
     """What tells the airspeed, in words, and the true one over the recorded one by it."""
 
-    def at(name: str) -> Array | None:
-        return _at(channels, name, t)
-
-    rho, temperature = at("rho"), at("temperature")
-    pressure, height = at("pressure"), at("h")
+    rho, temperature, pressure, height, qbar, mach = (
+        at(channels, n, t) for n in ("rho", "temperature", "pressure", "h", "qbar", "mach")
+    )
     if rho is None and pressure is not None and temperature is not None:
         rho = pressure / (_R * temperature)
     if rho is None and height is not None:
         rho = _SEA_LEVEL * np.clip(1.0 - 2.2558e-5 * height, 0.05, 2.0) ** 4.2559
     if temperature is None and height is not None:
         temperature = np.clip(288.15 - 0.0065 * height, 216.65, None)
-    qbar, mach = at("qbar"), at("mach")
     if qbar is not None and rho is not None:
         yield "qbar and density", _ratio(np.sqrt(2.0 * np.clip(qbar, 0.0, None) / rho), V)
     if mach is not None and temperature is not None:
         yield "mach and temperature", _ratio(mach * np.sqrt(_GAMMA * _R * temperature), V)
     for name in ("V_cas", "V_ias"):
-        other = at(name)
+        other = at(channels, name, t)
         if other is not None and rho is not None:
             yield name, _ratio(other * np.sqrt(_SEA_LEVEL / rho), V)
     yield "the change of motion that accelerometers and gyros recorded", _by_motion(channels)
@@ -125,18 +123,6 @@ def _accounts(t: Array, V: Array, channels: Mapping[str, Channel]) -> Iterator[t
 def _ratio(other: Array, V: Array) -> float:
     use = np.isfinite(other) & (other > 0.0)
     return float(np.median(other[use] / V[use])) if use.sum() >= 20 else math.nan
-
-
-def _at(channels: Mapping[str, Channel], name: str, t: Array, angle: bool = False) -> Array | None:
-    """A channel at t, linear between samples; None where there is none or it hardly says much."""
-    channel = channels.get(name)
-    if channel is None:
-        return None
-    good = np.isfinite(channel.values)
-    if good.sum() < 2:
-        return None
-    values = np.unwrap(channel.values[good]) if angle else channel.values[good]
-    return np.asarray(np.interp(t, channel.t[good], values))
 
 
 def _by_motion(channels: Mapping[str, Channel]) -> float:
@@ -155,7 +141,7 @@ def _by_motion(channels: Mapping[str, Channel]) -> float:
     t = base.t[(base.t >= begin) & (base.t <= end)]
     if len(t) < 50 or end - begin < 10.0 * WINDOW:
         return math.nan
-    got = {n: _at(channels, n, t, angle=n == "phi") for n in (*names, "beta")}
+    got = {n: at(channels, n, t, angle=n == "phi") for n in (*names, "beta")}
     if any(got[n] is None for n in names):
         return math.nan
     ay, az, p, q, r, phi, theta, alpha, speed = (np.asarray(got[n]) for n in names)
@@ -170,17 +156,12 @@ def _by_motion(channels: Mapping[str, Channel]) -> float:
         return math.nan
     best, ratio = ALIKE, math.nan
     for f, turn, side in zip(force, turning, (v, w), strict=True):
-        y = np.diff(np.interp(grid, t, _integral(t, f)))[whole]
-        x = np.diff(np.interp(grid, t, _integral(t, turn) + side))[whole]
-        if np.std(x) > 0.0 and np.std(y) > 0.0:
-            alike = float(np.corrcoef(x, y)[0, 1])
-            if alike > best:
-                best, ratio = alike, float(np.std(y) / np.std(x))
+        y = np.diff(np.interp(grid, t, integral(t, f)))[whole]
+        x = np.diff(np.interp(grid, t, integral(t, turn) + side))[whole]
+        alike, size = together(y, x)
+        if alike > best:
+            best, ratio = alike, size
     return ratio
-
-
-def _integral(t: Array, x: Array) -> Array:
-    return np.concatenate(([0.0], np.cumsum(0.5 * (x[1:] + x[:-1]) * np.diff(t))))
 
 
 def _covered(t: Array, grid: Array) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
@@ -194,7 +175,7 @@ def _over_ground(
 ) -> Iterator[tuple[str, float]]:
     """By velocity over ground: with the wind where the flight turned, else where it would blow
     beyond reason."""
-    north, east, psi = (_at(channels, n, t, n == "psi") for n in ("v_north", "v_east", "psi"))
+    north, east, psi = (at(channels, n, t, n == "psi") for n in ("v_north", "v_east", "psi"))
     if north is None or east is None or psi is None:
         return
     ahead = np.column_stack([np.cos(psi), np.sin(psi)])

@@ -15,7 +15,7 @@ from alula.base.units import CHANNELS, find_unit, known_channel
 from alula.logs.address import Column
 from alula.logs.fill import HUGE, looks_filled
 from alula.logs.first_model import model_lines, reconstruct_lines
-from alula.logs.guess_units import BY_SIZE, Guess, airspeeds, alike, unit_by_size
+from alula.logs.guess_units import BY_SIZE, Guess, alike, by_motion, unit_by_size
 from alula.logs.reader import read_tables
 from alula.logs.synonyms import guess_name
 from alula.logs.table import Table, Tables
@@ -89,7 +89,7 @@ def _guesses(tables: Tables, main: Table | None) -> list[Guess]:
             out[i] = _without(guess, f"looks like '{guess.name}' too")
         seen.add(guess.name)
     out = alike(out)
-    out = airspeeds(out)
+    out = by_motion(out)
     times = next((g.column.values for g in out if g.name == "t"), None)
     if times is not None:
         for i, guess in enumerate(out):

@@ -10,7 +10,8 @@ from alula.base.arrays import Array
 from alula.base.units import find_unit
 from alula.flight import Channel
 from alula.logs.address import Column
-from alula.logs.airspeed import other_unit
+from alula.logs.airspeed import other_unit as other_airspeed
+from alula.logs.height import other_unit as other_height
 from alula.logs.plausibility import doubt_of
 
 # Units to try in turn where nothing states one; the first that the values do not contradict.
@@ -28,6 +29,7 @@ CANDIDATES = {
     "1": ("1", "%"),
 }
 BY_SIZE = "its name, unit by size"
+_LIKE_V = ("V_cas", "V_ias")
 
 
 @dataclass(frozen=True)
@@ -73,30 +75,39 @@ def alike(guesses: list[Guess]) -> list[Guess]:
     return out
 
 
-def airspeeds(guesses: list[Guess]) -> list[Guess]:
-    """A true airspeed whose unit nothing states, by what else tells it; the others are alike."""
+def by_motion(guesses: list[Guess]) -> list[Guess]:
+    """A height and a true airspeed whose unit nothing states, by what else tells them; calibrated
+    and indicated airspeed are then in the unit of the true one.
+    """
     times = next((g for g in guesses if g.name == "t"), None)
     if times is None:
         return guesses
-    bare = [g for g in guesses if g.name in ("V", "V_cas", "V_ias") and g.why == BY_SIZE]
-    if not any(g.name == "V" for g in bare):
-        return guesses
-    # calibrated and indicated airspeed may be in the same wrong unit, so they do not count
-    channels = {
+    for name in ("h", "h_gps", "V"):
+        bare = [g for g in guesses if g.name == name and g.why == BY_SIZE]
+        channels = _channels(guesses, times)
+        if not bare or name not in channels:
+            continue
+        if name == "V":
+            bare += [g for g in guesses if g.name in _LIKE_V and g.why == BY_SIZE]
+            other = other_airspeed(channels, bare[0].unit)
+            found = None if other is None else (other.unit, other.by)
+        else:
+            height = other_height(name, channels, bare[0].unit)
+            found = None if height is None else height[:2]
+        if found is not None:
+            why = f"its name, unit by {found[1]}"
+            guesses = [replace(g, unit=found[0], why=why) if g in bare else g for g in guesses]
+    return guesses
+
+
+def _channels(guesses: list[Guess], times: Guess) -> dict[str, Channel]:
+    """The guesses as channels; without airspeeds that may be in the same wrong unit."""
+    n = len(times.column.values)
+    return {
         g.name: Channel(g.name, _si(times), _si(g), "", "")
         for g in guesses
-        if g.name not in ("", "t", "V_cas", "V_ias")
-        and len(g.column.values) == len(times.column.values)
+        if g.name not in ("", "t", *_LIKE_V) and len(g.column.values) == n
     }
-    if "V" not in channels:
-        return guesses
-    other = other_unit(channels, "m/s")
-    if other is None:
-        return guesses
-    return [
-        replace(g, unit=other.unit, why=f"its name, unit by {other.by}") if g in bare else g
-        for g in guesses
-    ]
 
 
 def _si(guess: Guess) -> Array:
