@@ -72,6 +72,18 @@ def test_a_column_under_its_other_word(small: SmallProject) -> None:
     assert "Did you mean 'de_deg'?" in said
 
 
+def test_another_kind_of_file_says_what_takes_it(small: SmallProject) -> None:
+    ran = alula("identify", small.folder / "sportstar.toml", "--json", "-")
+    assert_refused(ran, "bad_value", "alula.aircraft/1", "alula trim, modes, plan and predict")
+
+
+def test_json_where_a_model_is_wanted(small: SmallProject) -> None:
+    result = small.folder / "result.json"
+    result.write_text('{"schema": "alula.identification/1"}')
+    ran = alula("validate", small.path, "--model", result, "--json", "-")
+    assert_refused(ran, "not_toml", "`alula identify --model FILE` writes a model")
+
+
 def test_overlapping_windows(small: SmallProject) -> None:
     small.edit("end = 20.0", "end = 12.0")
     small.add_maneuver("second", 8.0, 20.0)
