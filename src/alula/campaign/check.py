@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +20,7 @@ from alula.logs.card import LogCard, log_card
 from alula.logs.maneuvers import maneuvers
 from alula.logs.own_channels import own_channels
 from alula.logs.reader import read_all
-from alula.model import COEFFICIENTS, parse
+from alula.model.formula_problems import formula_problems
 from alula.reconstruct.recorded import recorded_motion
 
 Progress = Callable[[str], None]
@@ -86,7 +85,9 @@ def check_project(
         )
     aircraft = _aircraft(project.aircraft, f"{path}: aircraft")
     loaded = _loaded(project, aircraft)
-    _formulas(project)
+    wrong = formula_problems(project.identify.models, f"{project.path}: identify.models")
+    if wrong:
+        raise BadInput(*wrong)
     if logs:
         project = _narrowed(project, logs)
     progress("reading logs")
@@ -102,35 +103,6 @@ def check_project(
         messages += outside_envelope(flights[log.id], flown, plane, project.channels_of(log))
     cards = tuple(log_card(flight, found) for flight in flights.values())
     return Checked(project, aircraft, flights, chosen, cards, tuple(messages), loaded)
-
-
-def _formulas(project: Project) -> None:
-    """Refuse coefficients and terms that nobody knows now, not after the logs were reconstructed.
-
-    A misspelled coefficient would else be taken for one that no maneuver serves.
-    """
-    problems = []
-    for name, formula in project.identify.models.items():
-        where = f"{project.path}: identify.models.{name}"
-        if name not in COEFFICIENTS:
-            same = [c for c in COEFFICIENTS if c.lower() == name.lower()]
-            near = same or get_close_matches(name, COEFFICIENTS, n=3, cutoff=0.5)
-            problems.append(
-                Message(
-                    "unknown_coefficient",
-                    "error",
-                    where,
-                    f"one of {', '.join(COEFFICIENTS)}",
-                    f"'{name}'",
-                    f"Did you mean {' or '.join(near)}?" if near else "Correct the name.",
-                )
-            )
-        try:
-            parse(formula)
-        except BadInput as error:
-            problems += [replace(m, where=f"{where}, {m.where}") for m in error.messages]
-    if problems:
-        raise BadInput(*problems)
 
 
 def taken_names(project: Project, aircraft: Sequence[Aircraft]) -> set[str]:
