@@ -184,4 +184,4 @@ def test_a_plans_misspelled_coefficient_is_refused_before_it_flies(tmp_path: Pat
     maneuvers = [{"id": "mild", "inputs": [doublet("de", 2.0)]}]
     ran = _fly(tmp_path, maneuvers=maneuvers, identify={"CM": "1 + alpha + qhat + de"})
     assert_refused(ran, "unknown_coefficient", "plan.toml: identify.CM", "Did you mean Cm?")
-    assert not (tmp_path / "out").exists()
+    assert not (tmp_path / "mild").exists()
