@@ -52,6 +52,38 @@ def test_window_outside_the_log(small: SmallProject) -> None:
     small.refused("window_outside_log", "maneuver longitudinal", "0 to 20 s", "0 to 25 s")
 
 
+@pytest.mark.parametrize(("name", "meant"), [("CM", "Cm"), ("Cmm", "Cm"), ("cz", "CZ")])
+def test_a_coefficient_that_nobody_knows(small: SmallProject, name: str, meant: str) -> None:
+    """It would else count as one that none of the maneuvers serves, and be left out."""
+    small.edit('\nCm = "', f'\n{name} = "')
+    said = small.refused("unknown_coefficient", f"identify.models.{name}")
+    assert f"Did you mean {meant}" in said
+
+
+def test_a_term_that_nobody_knows(small: SmallProject) -> None:
+    small.edit('Cm = "1 + alpha', 'Cm = "1 + alfa')
+    said = small.refused("unknown_term", "demo.toml: identify.models.Cm, formula", "character 5")
+    assert "Did you mean 'alpha'?" in said
+
+
+def test_a_column_under_its_other_word(small: SmallProject) -> None:
+    small.edit('from = "de_deg"', 'from = "elevator"')
+    said = small.refused("missing_channel", "'elevator'")
+    assert "Did you mean 'de_deg'?" in said
+
+
+def test_another_kind_of_file_says_what_takes_it(small: SmallProject) -> None:
+    ran = alula("identify", small.folder / "sportstar.toml", "--json", "-")
+    assert_refused(ran, "bad_value", "alula.aircraft/1", "alula trim, modes, plan and predict")
+
+
+def test_json_where_a_model_is_wanted(small: SmallProject) -> None:
+    result = small.folder / "result.json"
+    result.write_text('{"schema": "alula.identification/1"}')
+    ran = alula("validate", small.path, "--model", result, "--json", "-")
+    assert_refused(ran, "not_toml", "`alula identify --model FILE` writes a model")
+
+
 def test_overlapping_windows(small: SmallProject) -> None:
     small.edit("end = 20.0", "end = 12.0")
     small.add_maneuver("second", 8.0, 20.0)

@@ -63,3 +63,15 @@ def test_bad_input(tmp_path: Path, words: tuple[str, str]) -> None:
     assert done.code == 2
     assert "error:" in done.err
     assert "Traceback" not in done.err
+
+
+def test_all_that_is_missing_is_named(tmp_path: Path) -> None:
+    path = project(tmp_path, 3)
+    lines = path.read_text().splitlines()
+    kept = [line for line in lines if not line.startswith(("v_north", "v_east", "v_down", "psi"))]
+    assert len(kept) == len(lines) - 4
+    path.write_text("\n".join(kept) + "\n")
+    done = alula("airdata", path, "--json", "-")
+    assert done.code == 2
+    (said,) = done.messages("missing_channel")
+    assert said["found"].startswith("no psi, v_north, v_east, v_down among ")

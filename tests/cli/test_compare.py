@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from alula.campaign.compare import run_comparison
+from alula.cli.compare_output import text_of
 from cli.command import SmallProject, alula, assert_refused, small_project
 
 
@@ -75,6 +78,27 @@ def test_screen_has_every_shared_parameter(made: Results) -> None:
     for name in ("CD_alpha", "CL_q", "Cm_de", "initial states"):
         assert name in ran.out
     assert "q(0)[" not in ran.out
+
+
+@pytest.mark.parametrize("width", [80, 100, 160])
+def test_many_sources_fit_the_width(made: Results, width: int) -> None:
+    """Blocks of columns, each against the first; every number stands there whatever the width."""
+    found = run_comparison([made.ee, made.oe, made.model, made.ee, made.model])
+    lines = text_of(found, width).splitlines()
+    assert max(map(len, lines)) <= width
+    head = [line for line in lines if line.startswith("parameter")]
+    assert all("value (1)" in line for line in head)
+    assert [n for line in head for n in re.findall(r"value \((\d)\)", line) if n != "1"] == [
+        "2", "3", "4", "5",
+    ]  # fmt: skip
+    for row in found.rows:
+        if row.differences[0] is None:
+            assert "(0)[" in row.name  # output error's alone
+            continue
+        mine = [line for line in lines if line.split(" ")[0] == row.name.split(" ")[0]]
+        assert len(mine) >= len(head)
+    # 95 % intervals need 97 letters beside the first column
+    assert any("is left out" in line for line in lines) is (width < 97)
 
 
 def test_baseline_is_judged_on_the_same_maneuvers(made: Results, tmp_path: Path) -> None:

@@ -160,3 +160,28 @@ def test_sample_of_what_is_certain_is_refused(tmp_path: Path) -> None:
     ran = alula("fly", write(tmp_path), "--out", tmp_path / "out", "--sample", 1, "--json", "-")
     assert_refused(ran, "nothing_to_sample", "[uncertainty]")
     assert not (tmp_path / "out").exists()
+
+
+def _fly(tmp_path: Path, **tree: Any) -> Any:
+    plan = tmp_path / "plan.toml"
+    plan.write_text(toml_text(plan_tree(duration=4.0, **tree)))
+    return alula("fly", plan, "--out", tmp_path / tree["maneuvers"][0]["id"], "--json", "-")
+
+
+def test_an_input_against_the_stop_is_said(tmp_path: Path) -> None:
+    """The light airplane's elevator goes from -25 to 20 deg."""
+    ran = _fly(tmp_path, maneuvers=[{"id": "hard", "inputs": [doublet("de", 45.0)]}])
+    assert ran.code == 0, ran.err
+    (said,) = ran.messages("input_at_stop")
+    assert said["level"] == "warning"
+    assert "-25 to 20 deg" in said["expected"]
+    mild = _fly(tmp_path, maneuvers=[{"id": "mild", "inputs": [doublet("de", 2.0)]}])
+    assert mild.code == 0, mild.err
+    assert not mild.messages("input_at_stop")
+
+
+def test_a_plans_misspelled_coefficient_is_refused_before_it_flies(tmp_path: Path) -> None:
+    maneuvers = [{"id": "mild", "inputs": [doublet("de", 2.0)]}]
+    ran = _fly(tmp_path, maneuvers=maneuvers, identify={"CM": "1 + alpha + qhat + de"})
+    assert_refused(ran, "unknown_coefficient", "plan.toml: identify.CM", "Did you mean Cm?")
+    assert not (tmp_path / "mild").exists()

@@ -136,3 +136,17 @@ def test_only_the_logs_asked_for_are_in_the_report(flown: Path, tmp_path: Path) 
     for words, there in (((), True), (("--log", id), False)):
         assert alula("navigate", project, *words, "--report", page).code == 0
         assert ("second_log" in page.read_text()) is there
+
+
+def test_a_log_that_is_not_asked_for_is_not_read(flown: Path) -> None:
+    text = (flown / "campaign.toml").read_text()
+    block = text[text.index("[[logs]]") :].split("\n\n")[0]
+    id = block.split('id = "')[1].split('"')[0]
+    lost = '[[logs]]\nid = "lost"\npath = "nowhere.csv"'
+    project = flown / "lost.toml"
+    project.write_text(text.replace(block, f"{lost}\n\n{block}", 1))
+    assert alula("navigate", project, "--json", "-").code == 2
+    ran = alula("navigate", project, "--log", id, "--json", "-")
+    assert ran.code == 0, ran.err
+    assert [log["log"] for log in ran.envelope["result"]["logs"]] == [id]
+    assert len(ran.envelope["inputs"]) == 1

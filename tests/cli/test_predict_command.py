@@ -218,3 +218,22 @@ def test_project_names_a_prediction_as_prior(demo_files: Path, tmp_path: Path) -
     se = [{p["name"]: p["se"] for p in r.envelope["result"]["parameters"]} for r in (alone, both)]
     assert se[1]["CL_q"] < se[0]["CL_q"]
     json.dumps(se)
+
+
+def test_a_speed_outside_the_envelope_is_said() -> None:
+    """87 kt typed as m/s: the airplane's limit is 75 m/s."""
+    ran = alula("predict", SPORTSTAR, "--method", "semi", "--V", 87, "--json", "-")
+    assert ran.code == 0, ran.err
+    (said,) = ran.messages("outside_envelope")
+    assert "75 m/s" in said["expected"]
+    assert "--V is in m/s" in said["do"]
+
+
+def test_what_was_typed_in_degrees_is_said_in_degrees() -> None:
+    ran = alula("predict", SPORTSTAR, "--V", 45, "--alpha-deg", 40, "--json", "-")
+    assert_refused(ran, "impossible_condition", "(40 deg)", "(20 deg)")
+
+
+def test_a_surface_with_a_capital_is_asked_about() -> None:
+    ran = alula("predict", SPORTSTAR, "--V", 45, "--panels", "Wing=4x8", "--json", "-")
+    assert_refused(ran, "unknown_surface", "Did you mean 'wing'?")

@@ -114,3 +114,33 @@ def test_an_assumed_polar_is_said(tmp_path: Path) -> None:
     assert ran.code == 0
     assert ran.messages("assumed_polar")
     assert ran.messages("assumed_rpm")
+
+
+def test_the_page(file: Path, tmp_path: Path) -> None:
+    with_test(file, np.linspace(0.0, 0.5, 15))
+    page = tmp_path / "page.html"
+    ran = alula("propeller", file, "--rpm", 5000, "--fit-below", 0.4, "--report", page)
+    assert ran.code == 0, ran.err
+    assert f"Report: {page}" in ran.out
+    text = page.read_text()
+    assert "Fitted to the test" in text
+    assert "<script" not in text
+    assert text.count('class="left"') == 3 * 3  # J of 0.43, 0.46 and 0.5, in three pictures
+    assert f"{PARAMETERS.c_l_alpha:g}" in text
+    assert page.read_bytes() == alula_page(file, tmp_path).read_bytes()
+
+
+def alula_page(file: Path, folder: Path) -> Path:
+    """The same page once more."""
+    page = folder / "again.html"
+    words = ("--rpm", 5000, "--fit-below", 0.4, "--report", page)
+    assert alula("propeller", file, *words).code == 0
+    return page
+
+
+def test_beyond_thrust_there_is_no_efficiency(file: Path) -> None:
+    out = alula("propeller", file, "--rpm", 5000).out
+    rows = [line.split() for line in out.splitlines() if len(line.split()) == 4]
+    braking = [row for row in rows if row[1].startswith("-")]
+    assert braking
+    assert all(row[3] == "-" for row in braking)

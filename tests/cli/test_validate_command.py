@@ -316,3 +316,12 @@ def test_readings_of_flights_of_the_model_are_identified_again(
         # 3 draws know a mean to 0.6 standard errors and their deviation to 0.07 to 2.6 of it
         assert abs(r.mean - r.truth) < 2.0 * r.stated, r.name
         assert 0.05 * r.stated < r.scatter < 3.0 * r.stated, r.name
+
+
+def test_a_long_name_of_a_maneuver_stands_apart_from_its_verdict(small: SmallProject) -> None:
+    small.edit('id = "longitudinal"\nlog =', 'id = "elevator_at_45_m_s"\nlog =')
+    file = Path(__file__).parents[2] / "aircraft" / "sportstar_aero.toml"
+    ran = alula("validate", small.path, "--model", file, "--draws", 0)
+    rows = [x.split() for x in ran.out.splitlines() if x.startswith("  2.")]
+    assert rows
+    assert all(row[1] == "elevator_at_45_m_s" for row in rows)

@@ -78,10 +78,12 @@ def test_z_up_and_fill_values_are_guessed(tmp_path: Path) -> None:
 
 
 def test_citation(tmp_path: Path) -> None:
-    """Units as the data's own description states them; knots cannot be told from m/s by size."""
+    """Units as the data's own description states them; knots by the Mach number beside them,
+    feet by the rate of climb.
+    """
     _, project = guessed(data("citation_ph_lab", "flight.npz"), tmp_path)
     right = {"q": "deg/s", "theta": "deg", "alpha": "deg", "de": "deg", "temperature": "degC"}
-    right |= {"lon": "deg", "climb_rate": "ft/min", "t": "s"}
+    right |= {"lon": "deg", "climb_rate": "ft/min", "t": "s", "V": "kt", "V_cas": "kt", "h": "ft"}
     assert {name: project.channels[name].unit for name in right} == right
     az = project.channels["az"]  # "g with 1 g removed"
     assert (az.unit, az.offset, az.sign) == ("g", 1, -1)

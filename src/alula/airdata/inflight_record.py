@@ -16,6 +16,7 @@ FURTHER = ("alpha", "beta", "beta_flank", "h", "h_gps", "p", "q", "r", "ax", "ay
            "de", "da", "dr")  # fmt: skip
 SHORTEST = 60.0  # s of flight below which nothing is begun
 Point = tuple[float, float, float]
+_MAP = "Map them in [channels]; GPS velocity and attitude are what tells wind from error."
 
 
 @dataclass(frozen=True)
@@ -50,8 +51,7 @@ class AirDataRecord:
                 where="in-flight calibration",
                 expected=", ".join(NEEDED),
                 found="no " + ", ".join(missing),
-                do="Map them in [channels]; GPS velocity and attitude are what tells wind from "
-                "error.",
+                do=_MAP,
             )
         usable = np.all([np.isfinite(self.readings[name]) for name in NEEDED], axis=0)
         usable &= self.readings["V"] > 0.0
@@ -88,7 +88,13 @@ def record_of(
     names = [n for n in (*NEEDED, *FURTHER) if n in flight]
     missing = [n for n in NEEDED if n not in flight]
     if missing:
-        flight[missing[0]]  # raises, naming the channels there are
+        raise refuse(
+            "missing_channel",
+            where=f"log {flight.id}",
+            expected=", ".join(NEEDED),
+            found=f"no {', '.join(missing)} among {', '.join(sorted(flight.channels))}",
+            do=_MAP,
+        )
     begin = max([float(flight[n].t[0]) for n in NEEDED] + ([] if start is None else [start]))
     last = min([float(flight[n].t[-1]) for n in NEEDED] + ([] if end is None else [end]))
     if not last - begin >= SHORTEST:

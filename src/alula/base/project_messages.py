@@ -20,6 +20,15 @@ from pydantic import BaseModel, ValidationError
 from alula.base.messages import BadInput, Message, refuse
 from alula.base.units import to_si
 
+# What takes each kind of file, for those who name it elsewhere.
+_TAKERS = {
+    "project": "is for alula check, identify, validate, navigate and airdata",
+    "plan": "is for alula fly; check and identify take the project that it writes",
+    "aircraft": "is for alula trim, modes, plan and predict, and for 'aircraft' of a project",
+    "model": "is for --model of alula trim, modes, plan, validate, and for alula export",
+    "calibration": "is for alula calibrate",
+    "propeller": "is for alula propeller",
+}
 _Schema = TypeVar("_Schema", bound=BaseModel)
 
 
@@ -39,13 +48,21 @@ def read_toml(path: Path) -> tuple[str, dict[str, Any], str]:
         text = data.decode("utf-8-sig")
         tree = tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # not UTF-8, not TOML, endless numbers
+        do = (
+            "Mend the line named; strings need quotes, tables need [brackets]. A log? "
+            "`alula new` makes a project file for one."
+        )
+        if data.lstrip()[:1] == b"{":
+            do = (
+                "This looks like JSON, as --json writes it. `alula identify --model FILE` writes "
+                "a model, `alula compare` reads results."
+            )
         raise refuse(
             "not_toml",
             where=str(path),
             expected="TOML in UTF-8",
             found=str(error),
-            do="Mend the line named; strings need quotes, tables need [brackets]. A log? "
-            "`alula new` makes a project file for one.",
+            do=do,
         ) from None
     return text, tree, hashlib.sha256(data).hexdigest()
 
@@ -125,7 +142,10 @@ def explain(error: ValidationError, path: Path, text: str = "") -> list[Message]
         )
         if item["loc"] == ("schema",) and isinstance(item["input"], str):
             # another kind of file: what else differs would only hide that
-            return [replace(message, do="Name a file of that kind, or correct the key.")]
+            kind_of = re.match(r"alula\.(\w+)/", item["input"])
+            takes = _TAKERS.get(kind_of[1] if kind_of else "")
+            do = "Name a file of that kind, or correct the key."
+            return [replace(message, do=f"{do} This one {takes}." if takes else do)]
         if message not in messages:
             messages.append(message)
     return messages

@@ -15,8 +15,9 @@ from alula.base.messages import BadInput, Message, refuse, warn
 from alula.base.project import LogSpec, Project, load_project
 from alula.campaign.angle_board import arm_of
 from alula.campaign.angles import Angles, angles_of
-from alula.campaign.check import Progress
+from alula.campaign.check import Progress, taken_names
 from alula.flight import Flight, SourceFile
+from alula.logs.own_channels import own_channels
 from alula.logs.reader import read
 from alula.model import load_model
 
@@ -105,6 +106,7 @@ def run_air_data(
     aero = None if model is None else load_model(model)
     calibrated, refused, compared = {}, {}, {}
     files: list[SourceFile] = []
+    flown: dict[str, Aircraft] = {}
     said: list[Message] = []
     chosen = [spec for spec in project.logs if not logs or spec.id in logs]
     for spec in chosen:
@@ -113,6 +115,8 @@ def run_air_data(
         files += flight.files
         said += flight.messages
         aircraft = _aircraft(project, spec)
+        if aircraft is not None:
+            flown[spec.id] = aircraft
         progress(f"calibrating by {spec.id}")
         try:
             calibrated[spec.id] = _calibrated(flight, aircraft, start, end)
@@ -132,9 +136,10 @@ def run_air_data(
                 project, aircraft, flight, calibrated.get(spec.id), aero, start, end
             )
             said += compared[spec.id].messages
+    own = own_channels(project, taken_names(project, list(flown.values())))
     return AirDataJob(
         project, tuple(spec.id for spec in chosen), calibrated, refused, compared, tuple(files),
-        tuple(dict.fromkeys(said)),
+        tuple(dict.fromkeys([*own, *said])),
     )  # fmt: skip
 
 

@@ -17,6 +17,7 @@ from alula.identify.flown.output_error import identify_output_error
 from alula.identify.flown.problem import STATE_SETS, Setting
 from alula.identify.flown.usual_outputs import USUAL_OUTPUTS
 from alula.identify.merge import merged
+from alula.identify.parameter_unit import with_units
 
 LATERAL_OUTPUTS = frozenset({"beta", "p", "r", "phi", "ay", "pdot", "rdot"})
 
@@ -70,7 +71,7 @@ def by_outputs(
             setting = Setting(flown, tuple(outputs), **{k: own[k] for k in _SETTING & own.keys()})
             rest = {k: own[k] for k in ("noise", "priors", "scales", "covariance") if k in own}
             found = carried(found, serving, models, shifts, setting, **rest)
-        results.append(replace(found, formulas=found.formulas or models))
+        results.append(with_units(replace(found, formulas=found.formulas or models)))
     result = merged(results)
     return replace(result, messages=(*messages, *result.messages))
 

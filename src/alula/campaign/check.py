@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -10,20 +11,23 @@ from typing import Any
 import numpy as np
 
 from alula.aircraft import Aircraft, control_sign_check, load_aircraft
-from alula.base.messages import Message, note, refuse
+from alula.base.messages import BadInput, Message, note, refuse
 from alula.base.project import Project, load_project
+from alula.campaign.envelope import outside_envelope
 from alula.campaign.named import named
 from alula.flight import Flight, Maneuver, Motion, SourceFile
 from alula.logs.card import LogCard, log_card
 from alula.logs.maneuvers import maneuvers
+from alula.logs.own_channels import own_channels
 from alula.logs.reader import read_all
-from alula.model import parse
+from alula.model.formula_problems import formula_problems
 from alula.reconstruct.recorded import recorded_motion
 
 Progress = Callable[[str], None]
 
 # Codes of warnings after which a result would be wrong, not only less certain.
 CONTRADICTIONS = ("control_sign", "sign_contradiction")
+_WORD = re.compile(r"[A-Za-z_]\w*")
 
 
 @dataclass(frozen=True)
@@ -60,10 +64,14 @@ class Checked:
 
 
 def check_project(
-    path: str, only: Sequence[str] = (), progress: Progress = lambda _: None
+    path: str,
+    only: Sequence[str] = (),
+    progress: Progress = lambda _: None,
+    logs: Sequence[str] = (),
 ) -> Checked:
     """Read everything a project names and look through it. only: maneuver ids, all if empty.
 
+    logs: ids; the others are not read, and their maneuvers are none of the result's; all if empty.
     Raises BadInput, with every message there is, for what cannot be used.
     """
     project = load_project(path)
@@ -77,16 +85,53 @@ def check_project(
         )
     aircraft = _aircraft(project.aircraft, f"{path}: aircraft")
     loaded = _loaded(project, aircraft)
-    for formula in project.identify.models.values():
-        parse(formula)  # said now, not after the logs were reconstructed
+    wrong = formula_problems(project.identify.models, f"{project.path}: identify.models")
+    if wrong:
+        raise BadInput(*wrong)
+    if logs:
+        project = _narrowed(project, logs)
     progress("reading logs")
     flights = read_all(project)
     found, said = maneuvers(project, flights)
     chosen = named(project, found, only)
-    messages = [*aircraft.messages, *said, *_signs(flights, chosen, aircraft)]
+    messages = own_channels(project, taken_names(project, [aircraft, *loaded.values()]))
+    messages += [*aircraft.messages, *said, *_signs(flights, chosen, aircraft)]
     messages += [m for other in loaded.values() for m in other.messages]
+    for log in project.logs:
+        flown = [m for m in chosen if m.log == log.id]
+        plane = loaded.get(log.id, aircraft)
+        messages += outside_envelope(flights[log.id], flown, plane, project.channels_of(log))
     cards = tuple(log_card(flight, found) for flight in flights.values())
     return Checked(project, aircraft, flights, chosen, cards, tuple(messages), loaded)
+
+
+def taken_names(project: Project, aircraft: Sequence[Aircraft]) -> set[str]:
+    """Names that engines, sensors, controls, formulas and options of the methods take."""
+    found = {word for text in project.identify.models.values() for word in _WORD.findall(text)}
+    found |= set(_WORD.findall(repr(project.identify.options)))
+    found |= {*project.reconstruct.sensors, *project.navigate.sensors}
+    for one in aircraft:
+        found |= {e.channel for e in one.engines if e.channel} | {*one.sensors, *one.control_signs}
+    return found
+
+
+def _narrowed(project: Project, logs: Sequence[str]) -> Project:
+    """The project with these logs alone."""
+    known = [log.id for log in project.logs]
+    for name in logs:
+        if name not in known:
+            raise refuse(
+                "unknown_log",
+                where="--log",
+                expected="one of " + ", ".join(known),
+                found=f"'{name}'",
+                do="Name a log of the project file.",
+            )
+    kept = {
+        "logs": [log for log in project.logs if log.id in logs],
+        "maneuvers": [m for m in project.maneuvers if m.log in logs],
+    }
+    return project.model_copy(update=kept)
 
 
 def _aircraft(file: Path, where: str) -> Aircraft:

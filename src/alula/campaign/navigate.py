@@ -53,15 +53,8 @@ class NavigationJob:
         return any(m.code in CONTRADICTIONS for m in self.messages)
 
     def all_messages(self) -> tuple[Message, ...]:
-        """The messages of every stage, each once; not those of logs that were left out."""
-        left_out = {
-            m
-            for name, flight in self.checked.flights.items()
-            if name not in self.found
-            for m in flight.messages
-        }
-        read = [m for m in self.checked.all_messages() if m not in left_out]
-        return tuple(dict.fromkeys([*read, *self.messages]))
+        """The messages of every stage, each once."""
+        return tuple(dict.fromkeys([*self.checked.all_messages(), *self.messages]))
 
 
 def run_navigation(
@@ -71,18 +64,12 @@ def run_navigation(
     logs: Sequence[str] = (),
     progress: Progress = lambda _: None,
 ) -> NavigationJob:
-    """Filter each log of a project, or those named. Raises BadInput for what cannot be used."""
+    """Filter each log of a project, or those named, which alone are read.
+
+    Raises BadInput for what cannot be used.
+    """
     begin = time.perf_counter()
-    checked = check_project(path, (), progress)
-    for name in logs:
-        if name not in checked.flights:
-            raise refuse(
-                "unknown_log",
-                where="--log",
-                expected="one of " + ", ".join(checked.flights),
-                found=f"'{name}'",
-                do="Name a log of the project file.",
-            )
+    checked = check_project(path, (), progress, logs)
     read = time.perf_counter()
     spec = checked.project.navigate
     kind = filter or spec.filter
@@ -96,7 +83,7 @@ def run_navigation(
         )
     found, difference = {}, {}
     messages: list[Message] = []
-    for name in logs or checked.flights:
+    for name in checked.flights:
         progress(f"navigating {name}")
         flight = checked.flights[name]
         found[name], said = navigate_flight(
@@ -270,7 +257,7 @@ def report_of_navigation(done: NavigationJob, date: str, seed: int | None) -> Re
         name=project.name,
         path=str(project.path),
         date=date,
-        cards=tuple(card for card in done.checked.cards if card.log in done.found),
+        cards=done.checked.cards,
         maneuvers=(),
         navigation=done.found,
         messages=done.all_messages(),

@@ -69,7 +69,7 @@ def run_prediction(
         )  # fmt: skip
     shape = _shape(plane)
     flow = _flow(plane, asked)
-    said: list[Message] = []
+    said = _outside(plane, asked)
     wing = shape.surface("wing")
     handbook: Derivatives | None = None
     if wing is not None and asked.method in ("combined", "semi", "strip"):
@@ -100,6 +100,25 @@ def run_prediction(
         plane, asked.method, asked.h, flow, alpha, whole, tuple(parts), model,
         lattice, study, loads, neutral, se, tuple(said),
     )  # fmt: skip
+
+
+def _outside(plane: Aircraft, asked: Asked) -> list[Message]:
+    """A warning where the aircraft does not fly at the speed or the height asked for."""
+    out = []
+    for name, unit in (("V", "m/s"), ("h", "m")):
+        value, limits = getattr(asked, name), getattr(plane.envelope, name)
+        if value is not None and limits is not None and not limits[0] <= value <= limits[1]:
+            out.append(
+                warn(
+                    "outside_envelope",
+                    where=f"--{name}",
+                    expected=f"{limits[0]:.4g} to {limits[1]:.4g} {unit}, the aircraft file's "
+                    "envelope",
+                    found=f"{value:.4g} {unit}",
+                    do="Nothing, if it is meant so; --V is in m/s, --h in m.",
+                )
+            )
+    return out
 
 
 def _shape(plane: Aircraft) -> Geometry:

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-import math
 from math import radians
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from alula.cli.compare_output import text_of
 from alula.cli.contract import Command, JsonOption, QuietOption, SeedOption, ThreadsOption
 from alula.cli.predict import HeightOption, Method, SpeedOption
 
 if TYPE_CHECKING:
     from alula.campaign.compare import Comparison
-    from alula.identify.compare import Difference, Row
+    from alula.identify.compare import Row
 
 
 def compare(
@@ -191,92 +191,3 @@ def result_of(found: Comparison, limit: float | None) -> dict[str, Any]:
             for c, every in found.judged.items()
         },
     }
-
-
-def text_of(found: Comparison) -> str:
-    """The columns with a number each, the parameters, and how each predicts."""
-    lines = []
-    for i, s in enumerate(found.sources, start=1):
-        words = f"{i}  {s.column.name}: {s.column.method}"
-        lines.append(words + (f"; se: {s.column.se_is}" if s.column.se_is else ""))
-    lines += ["", _header(found), "-" * len(_header(found))]
-    shown = [r for r in found.rows if not _own(r)]
-    lines += [_line(found, row) for row in shown]
-    if len(shown) < len(found.rows):
-        lines.append(
-            f"{len(found.rows) - len(shown)} initial states and biases that stand in one column "
-            "alone: see --json."
-        )
-    lines.append(
-        "ratio, its 95 % interval and the difference are to column 1; the difference is in "
-        "combined se."
-    )
-    if any(_starred(d) for r in shown for d in r.differences):
-        lines.append("* the rate's derivative alone, beside sums with the lag's.")
-    if found.judged:
-        ids = ", ".join(m.id for m in found.maneuvers)
-        held = all(m.held_out for m in found.maneuvers)
-        lines += ["", f"On {'held-out ' if held else ''}maneuvers {ids}:"]
-        head = f"{'coefficient':<14}{'samples':>9}"
-        head += "".join(f"{f'R2 ({i})':>11}{'RRMSE':>9}" for i in range(1, len(found.sources) + 1))
-        lines += [head, "-" * len(head)]
-        for c, every in found.judged.items():
-            cells = "".join(
-                f"{'-':>11}{'-':>9}" if j is None else f"{j.r2:>11.4f}{j.rrmse:>9.2%}"
-                for j in every
-            )
-            lines.append(f"{c:<14}{found.samples[c]:>9d}{cells}")
-        for i, s in enumerate(found.sources):
-            saw = [id for id, words in found.seen.items() if words[i] != "no"]
-            if saw:
-                sure = all(found.seen[id][i] == "yes" for id in saw)
-                lines.append(
-                    f"{s.column.name} {'learned' if sure else 'may have learned'} from "
-                    f"{', '.join(saw)}: no validation there"
-                )
-    return "\n".join(lines)
-
-
-def _starred(d: Difference | None) -> bool:
-    return d is not None and d.entry.verdict == "alone"
-
-
-def _own(row: Row) -> bool:
-    """Whether it is a nuisance of one result: an initial state or bias of a maneuver."""
-    alone = sum(d is not None for d in row.differences) == 1
-    return alone and ("(0)[" in row.name or row.name.startswith("b_"))
-
-
-def _wide(found: Comparison) -> int:
-    return max([12, *(len(r.name) + 1 for r in found.rows if not _own(r))])
-
-
-def _header(found: Comparison) -> str:
-    out = f"{'parameter':<{_wide(found)}}"
-    for i in range(1, len(found.sources) + 1):
-        out += f"{f'value ({i})':>12}{'se':>10}"
-        if i > 1:
-            out += f"{'ratio':>8}{'95 %':>17}{'diff/se':>9}"
-    return out
-
-
-def _line(found: Comparison, row: Row) -> str:
-    out = f"{row.name:<{_wide(found)}}"
-    for i, d in enumerate(row.differences):
-        rest = i > 0
-        if d is None:
-            out += f"{'-':>12}{'-':>10}" + (f"{'-':>8}{'-':>17}{'-':>9}" if rest else "")
-            continue
-        e = d.entry
-        if e.verdict == "not_identifiable":
-            out += f"{'not ident.':>12}{'-':>10}"
-        else:
-            value = f"{e.value:.5g}" + ("*" if _starred(d) else "")
-            out += f"{value:>12}" + (f"{e.se:>10.2g}" if math.isfinite(e.se) else f"{'-':>10}")
-        if rest:
-            # + 0.0: no minus before a zero
-            out += f"{d.ratio + 0.0:>8.3f}" if math.isfinite(d.ratio) else f"{'-':>8}"
-            low, high = d.ratio_ci95
-            out += f"{f'{low:.2f} to {high:.2f}' if math.isfinite(low) else '-':>17}"
-            out += f"{d.sigmas:>+9.2f}" if math.isfinite(d.sigmas) else f"{'-':>9}"
-    return out

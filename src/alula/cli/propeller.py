@@ -12,6 +12,7 @@ from alula.cli.contract import (
     Command,
     JsonOption,
     QuietOption,
+    ReportOption,
     SeedOption,
     ThreadsOption,
     writable,
@@ -63,6 +64,7 @@ def propeller(
     plot: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write the curves there, .png or .svg.")
     ] = None,
+    report: ReportOption = None,
     json: JsonOption = "",
     seed: SeedOption = None,
     threads: ThreadsOption = 1,
@@ -77,6 +79,7 @@ def propeller(
     with command.run():
         if plot is not None:
             _check_plot(plot)
+        writable(report, "report")
         from alula.aircraft.load_propeller import load_propeller
         from alula.cli.condition import source_of
 
@@ -91,7 +94,23 @@ def propeller(
         command.say(text_of(work))
         if plot is not None:
             _write(plot, work)
-        command.written(Picture=plot)
+        if report is not None:
+            from alula.base.files import write_whole
+            from alula.report.propeller_page import propeller_page
+
+            write_whole(
+                report,
+                propeller_page(
+                    work.blades,
+                    work.rpm,
+                    work.curves,
+                    work.fits,
+                    work.test,
+                    work.fit_below,
+                    work.messages,
+                ),
+            )
+        command.written(Picture=plot, Report=report)
 
 
 @dataclass

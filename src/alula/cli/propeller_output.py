@@ -64,7 +64,7 @@ def text_of(work: Work) -> str:
         lines += [f"  {text}" for text in c.notes]
         lines.append(f"{'J':>8}{'CT':>10}{'CP':>10}{'eta':>8}")
         lines += [
-            f"{j:>8.4g}{t:>10.5f}{p:>10.5f}{e:>8.3f}"
+            f"{j:>8.4g}{t:>10.5f}{p:>10.5f}" + (f"{e:>8.3f}" if t >= 0.0 else f"{'-':>8}")
             for j, t, p, e in zip(c.J, c.CT, c.CP, c.eta, strict=True)
         ]
     return "\n".join(lines)

@@ -206,10 +206,11 @@ def text_of(done: ValidationJob) -> str:
                     f"{q.bias:>7.2f}{q.variance:>7.2f}{q.covariance:>7.2f}{mark}"
                 )
     lines += ["", found.regulation]
+    wide = max([12, *(len(row.maneuver) for row in found.evidence)]) + 2
     for row in found.evidence:
         seen = {"no": "", "yes": " (SEEN)", "unknown": " (seen?)"}[row.seen]
         lines.append(
-            f"  {row.entry:<8}{row.maneuver:<14}{_WORDS[row.verdict] + seen:<18}{row.tolerance}"
+            f"  {row.entry:<8}{row.maneuver:<{wide}}{_WORDS[row.verdict] + seen:<18}{row.tolerance}"
         )
         for k in row.criteria:
             lines.append(

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from difflib import get_close_matches
 
 import numpy as np
 
 from alula.base.arrays import Array
 from alula.base.messages import Message, refuse
+from alula.base.units import known_channel
 
 
 @dataclass(frozen=True)
@@ -57,12 +59,15 @@ class Flight:
         try:
             return self.channels[name]
         except KeyError:
+            own = [c for c in self.channels if known_channel(c) is None]
+            near = get_close_matches(name, own, n=1, cutoff=0.66)
             raise refuse(
                 "missing_channel",
                 where=f"log {self.id}",
                 expected=f"channel '{name}'",
                 found=", ".join(sorted(self.channels)) or "no channels",
-                do=f"Map '{name}' in [channels] of the project file.",
+                do=f"Map '{name}' in [channels] of the project file."
+                + (f" Is '{near[0]}' a slip of the pen?" if near else ""),
             ) from None
 
     def __contains__(self, name: str) -> bool:

@@ -24,7 +24,8 @@ def summary(result: Identification) -> str:
             f"{held}{fit.n_held_out:>10d}  {fit.formula}{label}"
         )
     lines += ["-" * _WIDTH, _header(result), "-" * _WIDTH]
-    lines += [_row(p, _name_width(result)) for p in result.parameters]
+    wide, units = _name_width(result), _unit_width(result)
+    lines += [_row(p, wide, units) for p in result.parameters]
     lines += ["=" * _WIDTH, result.status]
     for name, fit in result.fits.items():
         if fit.diagnostics:
@@ -48,20 +49,24 @@ def _name_width(result: Identification) -> int:
     return max([18, *(len(p.name) + 1 for p in result.parameters)])
 
 
+def _unit_width(result: Identification) -> int:
+    return max([9, *(len(p.unit) + 2 for p in result.parameters)])
+
+
 def _header(result: Identification) -> str:
     truth = any(p.truth is not None for p in result.parameters)
     biased = any(p.bias is not None for p in result.parameters)
     return (
         f"{'parameter':<{_name_width(result)}}{'value':>12}{'se':>11}{'se white':>11}"
         f"{'[0.025':>12}{'0.975]':>12}"
-        f"{'unit':>9}{'VIF':>8}"
+        f"{'unit':>{_unit_width(result)}}{'VIF':>8}"
         + (f"{'truth':>11}" if truth else "")
         + (f"{'bias':>10}" if biased else "")
         + "  verdict"
     )
 
 
-def _row(p: Parameter, wide: int) -> str:
+def _row(p: Parameter, wide: int, units: int) -> str:
     truth = "" if p.truth is None else f"{p.truth:>11.5g}"
     if p.bias is not None:
         truth += f"{p.bias:>10.2g}"
@@ -73,8 +78,8 @@ def _row(p: Parameter, wide: int) -> str:
             for tie in p.tied_to
         )
         words = "not identifiable" + (f": only {p.name} {tied}" if tied else ": not excited")
-        return f"{p.name:<{wide}}{gap}{unit:>9}{p.vif:>8.3g}{truth}  {words}"
+        return f"{p.name:<{wide}}{gap}{unit:>{units}}{p.vif:>8.3g}{truth}  {words}"
     return (
         f"{p.name:<{wide}}{p.value:>12.5g}{p.se:>11.3g}{p.se_white:>11.3g}{p.ci95[0]:>12.4g}"
-        f"{p.ci95[1]:>12.4g}{unit:>9}{p.vif:>8.3g}{truth}  {p.verdict}"
+        f"{p.ci95[1]:>12.4g}{unit:>{units}}{p.vif:>8.3g}{truth}  {p.verdict}"
     )

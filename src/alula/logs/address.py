@@ -10,6 +10,7 @@ from difflib import get_close_matches
 from alula.base.arrays import Array
 from alula.base.messages import BadInput, refuse
 from alula.base.project import LogSpec
+from alula.logs.synonyms import guess_name
 from alula.logs.table import Table, Tables
 
 
@@ -147,7 +148,9 @@ def _numbered(table: Table, number: int, where: str) -> Column:
 def _missing(log: LogSpec, tables: Tables, source: str, where: str) -> BadInput:
     names = [t.name for t in tables.tables if t.name]
     names += [n for t in tables.tables for n in t.columns if n and n not in names]
-    near = get_close_matches(source, names, n=3, cutoff=0.5)
+    meant, _ = guess_name(source)  # 'elevator' where the file has 'de_deg'
+    near = [n for n in names if meant and guess_name(n)[0] == meant][:3]
+    near = near or get_close_matches(source, names, n=3, cutoff=0.5)
     shown = ", ".join(names[:12]) + (f" and {len(names) - 12} more" if len(names) > 12 else "")
     return refuse(
         "missing_channel",

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import re
-from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -16,40 +15,12 @@ from alula.base.units import CHANNELS, find_unit, known_channel
 from alula.logs.address import Column
 from alula.logs.fill import HUGE, looks_filled
 from alula.logs.first_model import model_lines, reconstruct_lines
-from alula.logs.plausibility import doubt_of
+from alula.logs.guess_units import BY_SIZE, Guess, alike, by_motion, unit_by_size
 from alula.logs.reader import read_tables
 from alula.logs.synonyms import guess_name
 from alula.logs.table import Table, Tables
 
-# Units to try in turn where nothing states one; the first that the values do not contradict.
-CANDIDATES = {
-    "s": ("s", "ms", "us", "ns"),
-    "rad": ("rad", "deg"),
-    "rad/s": ("rad/s", "deg/s"),
-    "rad/s2": ("rad/s2", "deg/s2"),
-    "m/s2": ("m/s2", "g", "ft/s2"),
-    "m/s": ("m/s", "ft/min"),
-    "kg/s": ("kg/s", "kg/h", "lb/h"),
-    "K": ("K", "degC", "degF"),
-    "Pa": ("Pa", "hPa", "kPa", "inHg"),
-    "kg/m3": ("kg/m3", "slug/ft3"),
-    "1": ("1", "%"),
-}
-BY_SIZE = "its name, unit by size"
 EXAMPLE_S = 20.0  # length of the example maneuver
-
-
-@dataclass(frozen=True)
-class Guess:
-    """One column and what it may be."""
-
-    source: int | str
-    column: Column
-    name: str  # '' if nothing fits
-    unit: str
-    sign: int
-    why: str
-    offset: float = 0.0  # in the source's unit
 
 
 def new_project(log_path: Path | str, folder: Path | str | None = None) -> str:
@@ -117,27 +88,13 @@ def _guesses(tables: Tables, main: Table | None) -> list[Guess]:
         if guess.name and guess.name in seen:
             out[i] = _without(guess, f"looks like '{guess.name}' too")
         seen.add(guess.name)
-    out = _alike(out)
+    out = alike(out)
+    out = by_motion(out)
     times = next((g.column.values for g in out if g.name == "t"), None)
     if times is not None:
         for i, guess in enumerate(out):
             if guess.name and len(guess.column.values) != len(times):
                 out[i] = _without(guess, f"'{guess.name}'? has a time of its own to be given")
-    return out
-
-
-def _alike(guesses: list[Guess]) -> list[Guess]:
-    """A log with one angle in degrees has all in degrees; ax and ay have the unit of az."""
-    degrees = any(g.unit == "deg" for g in guesses if g.name)
-    vertical = next((g.unit for g in guesses if g.name == "az"), "")
-    out = []
-    for g in guesses:
-        unit = g.unit
-        if g.why == BY_SIZE and degrees:
-            unit = {"rad": "deg", "rad/s": "deg/s", "rad/s2": "deg/s2"}.get(unit, unit)
-        if g.why == BY_SIZE and g.name in ("ax", "ay") and vertical:
-            unit = vertical
-        out.append(g if unit == g.unit else replace(g, unit=unit, why="its name, unit as others"))
     return out
 
 
@@ -159,7 +116,7 @@ def _guess(source: int | str, column: Column, label: str) -> Guess:
         unit, why = column.unit, "its name and unit"
     else:
         why = "its name" if unit else BY_SIZE
-        unit = unit or _unit_by_size(name, known.unit, values)
+        unit = unit or unit_by_size(name, known.unit, values)
     if name != "az":
         return Guess(source, column, name, unit, 1, why)
     unit, sign, offset = _vertical(label, unit, values, why == BY_SIZE)
@@ -184,21 +141,6 @@ def _vertical(label: str, unit: str, values: Array, by_size: bool) -> tuple[str,
     return unit, (-1 if 5.0 < middle < 15.0 else 1), 0.0
 
 
-def _unit_by_size(name: str, si: str, values: Array) -> str:
-    for unit in CANDIDATES.get(si, (si,)):
-        found = find_unit(unit)
-        assert found is not None
-        converted = found.scale * values + found.offset
-        if name == "t":
-            if len(values) > 2 and np.median(np.abs(np.diff(converted))) < 5.0:
-                return unit
-        else:
-            doubt = doubt_of(name, si, converted)
-            if doubt is None or doubt.code in ("axes_z_up", "gravity_removed"):
-                return unit
-    return si
-
-
 def _find_time(guesses: list[Guess]) -> list[Guess]:
     """The first column whose values increase evenly is taken for the time."""
     for i, guess in enumerate(guesses):
@@ -207,7 +149,7 @@ def _find_time(guesses: list[Guess]) -> list[Guess]:
         if len(dt) < 3 or guess.name or not np.isfinite(dt).all() or (dt <= 0).any():
             continue
         if np.quantile(dt, 0.9) < 1.5 * np.median(dt):
-            unit = _unit_by_size("t", "s", x)
+            unit = unit_by_size("t", "s", x)
             new = Guess(guess.source, guess.column, "t", unit, 1, "it increases evenly")
             return [*guesses[:i], new, *guesses[i + 1 :]]
     return guesses

@@ -16,6 +16,9 @@ from alula.base.arrays import Array
 from alula.base.messages import BadInput, Message, warn
 from alula.base.project import ChannelSpec, LogSpec
 from alula.flight import Channel
+from alula.logs.airspeed import airspeed
+from alula.logs.height import heights
+from alula.logs.incidence import flow_angles
 from alula.logs.still import resting
 
 
@@ -186,6 +189,13 @@ def check(
                 if confirmed:
                     told = replace(told, level="warning")
                 (problems if told.level == "error" else messages).append(told)
+    if not problems:
+        for told in (*heights(log, specs, channels), *flow_angles(log, specs, channels)):
+            (problems if told.level == "error" else messages).append(told)
+    if not problems:  # a wrong unit elsewhere would be taken for V's
+        told = airspeed(log, specs, channels)
+        if told is not None:
+            (problems if told.level == "error" else messages).append(told)
     if problems:
         raise BadInput(*problems)
     return messages

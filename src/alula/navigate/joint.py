@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from alula.base.arrays import Array, frozen
+from alula.base.arrays import frozen
 from alula.base.messages import Message
 from alula.core import core
 from alula.navigate.result import (
@@ -17,7 +17,15 @@ from alula.navigate.result import (
     inertial_counts,
     takings_of,
 )
-from alula.navigate.samples import MICRO, Inertial, Readings, merged
+from alula.navigate.samples import (
+    MICRO,
+    Inertial,
+    Readings,
+    just_before,
+    longest_step,
+    merged,
+    row,
+)
 from alula.navigate.start import Start, first_state
 
 
@@ -79,8 +87,8 @@ def navigate_joint(
          start.sigma_force_bias, start.sigma_wind, start.sigma_height_bias]
     )  # fmt: skip
     found = core.navigate_joint(
-        noise, start.state(), sigma, _before(start.t, inertial), _row(inertial.t),
-        _row(inertial.rate), _row(inertial.force), rows, every,
+        noise, start.state(), sigma, just_before(start.t, inertial), row(inertial.t),
+        row(inertial.rate), row(inertial.force), rows, every,
     )  # fmt: skip
     x = found["x"]
     return Navigation(
@@ -101,28 +109,3 @@ def navigate_joint(
         inertial=inertial_counts(found),
         messages=tuple(messages),
     )
-
-
-def _row(values: Array) -> Array:
-    return np.ascontiguousarray(values, dtype=np.float64)
-
-
-def _before(t: float, inertial: Inertial) -> float:
-    """A start at the first sample lies just before it, so that this is the first step."""
-    if t < float(inertial.t[0]):
-        return t
-    usual = _usual_step(inertial)
-    return t - (1e-3 if usual is None else usual)
-
-
-def longest_step(inertial: Inertial) -> float:
-    """Time between samples, s, beyond which there is a hole: 0.1; 0.15 for samples at 10 Hz."""
-    usual = _usual_step(inertial)
-    return 0.1 if usual is None else min(max(0.1, 1.5 * usual), 0.2)
-
-
-def _usual_step(inertial: Inertial) -> float | None:
-    """Median time between samples, s; None where none goes on."""
-    steps = np.diff(inertial.t[np.isfinite(inertial.t)])
-    steps = steps[steps > 0.0]
-    return float(np.median(steps)) if len(steps) else None

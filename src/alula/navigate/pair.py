@@ -10,7 +10,6 @@ import numpy as np
 from alula.base.arrays import frozen
 from alula.base.messages import Message
 from alula.core import core
-from alula.navigate.joint import _before, _row, longest_step
 from alula.navigate.result import (
     PAIR_STATES,
     Navigation,
@@ -18,7 +17,15 @@ from alula.navigate.result import (
     inertial_counts,
     takings_of,
 )
-from alula.navigate.samples import MICRO, Inertial, Readings, merged
+from alula.navigate.samples import (
+    MICRO,
+    Inertial,
+    Readings,
+    just_before,
+    longest_step,
+    merged,
+    row,
+)
 from alula.navigate.start import Start, first_state
 
 
@@ -73,9 +80,8 @@ def navigate_pair(
     )  # fmt: skip
     found = core.navigate_pair(
         attitude, position, MICRO * np.array(settings.field), settings.steps, start.state()[:10],
-        sigma,
-        _before(start.t, inertial), _row(inertial.t), _row(inertial.rate), _row(inertial.force),
-        rows, every,
+        sigma, just_before(start.t, inertial), row(inertial.t), row(inertial.rate),
+        row(inertial.force), rows, every,
     )  # fmt: skip
     x = found["x"]
     unknown = frozen(np.full((len(x), 3), np.nan))

@@ -102,3 +102,29 @@ def assumed_sideslip(inertial: Inertial, sigma: float = 0.12, rate: float = 1.0)
     t = inertial.t[np.isfinite(inertial.t)]
     stamps = np.arange(float(t[0]), float(t[-1]), 1.0 / rate)
     return Readings("beta", stamps, np.zeros(len(stamps)), sigma)
+
+
+def row(values: Array) -> Array:
+    """The values as the core takes them: contiguous, double."""
+    return np.ascontiguousarray(values, dtype=np.float64)
+
+
+def just_before(t: float, inertial: Inertial) -> float:
+    """A start `t`, s, at the first sample lies just before it, so that this is the first step."""
+    if t < float(inertial.t[0]):
+        return t
+    usual = _usual_step(inertial)
+    return t - (1e-3 if usual is None else usual)
+
+
+def longest_step(inertial: Inertial) -> float:
+    """Time between samples, s, beyond which there is a hole: 0.1; 0.15 for samples at 10 Hz."""
+    usual = _usual_step(inertial)
+    return 0.1 if usual is None else min(max(0.1, 1.5 * usual), 0.2)
+
+
+def _usual_step(inertial: Inertial) -> float | None:
+    """Median time between samples, s; None where none goes on."""
+    steps = np.diff(inertial.t[np.isfinite(inertial.t)])
+    steps = steps[steps > 0.0]
+    return float(np.median(steps)) if len(steps) else None

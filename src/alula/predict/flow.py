@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from alula.base.messages import refuse
@@ -28,14 +29,19 @@ class Flow:
         if not 0.0 <= self.mach < 0.9:
             raise _bad("mach", self.mach, "from 0 to below 0.9 (attached subsonic flow)")
         if self.alpha is not None and not -0.35 <= self.alpha <= 0.35:
-            raise _bad("alpha", self.alpha, "within 0.35 rad: these formulas are of attached flow")
+            raise _bad(
+                "alpha",
+                self.alpha,
+                "within 0.35 rad (20 deg): these formulas are of attached flow",
+                f"{self.alpha:.4g} rad ({math.degrees(self.alpha):.4g} deg)",
+            )
 
 
-def _bad(name: str, value: float, expected: str) -> Exception:
+def _bad(name: str, value: float, expected: str, found: str = "") -> Exception:
     return refuse(
         "impossible_condition",
         where=f"condition of the prediction, {name}",
         expected=expected,
-        found=f"{value:g}",
+        found=found or f"{value:g}",
         do="Correct the condition.",
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from difflib import get_close_matches
 
 import numpy as np
 
@@ -125,7 +126,10 @@ def check_mesh(geometry: Geometry, mesh: Mapping[str, tuple[int, int]]) -> None:
     for name, (m, s) in mesh.items():
         if name not in names:
             expected = "surfaces of the geometry: " + ", ".join(names)
-            raise _wrong("unknown_surface", "vortex_lattice, panels", expected, f"'{name}'")
+            near = get_close_matches(name.lower(), [n.lower() for n in names], n=1)
+            meant = [n for n in names if n.lower() in near]
+            do = f"Did you mean '{meant[0]}'?" if meant else "Correct it."
+            raise _wrong("unknown_surface", "vortex_lattice, panels", expected, f"'{name}'", do)
         if min(m, s) < 1:
             expected = "at least 1 panel along the chord and the span"
             raise _wrong("panels", f"vortex_lattice, panels.{name}", expected, f"({m}, {s})")
@@ -217,5 +221,5 @@ def assumed_zero_lift(geometry: Geometry) -> tuple[Message, ...]:
     )
 
 
-def _wrong(code: str, where: str, expected: str, found: str) -> BadInput:
-    return refuse(code, where=where, expected=expected, found=found, do="Correct it.")
+def _wrong(code: str, where: str, expected: str, found: str, do: str = "Correct it.") -> BadInput:
+    return refuse(code, where=where, expected=expected, found=found, do=do)

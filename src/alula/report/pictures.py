@@ -32,6 +32,12 @@ def _text(x: float, y: float, text: object, anchor: str = "start", **attributes:
     return tag("text", text, x=f"{x:.1f}", y=f"{y:.1f}", text_anchor=anchor, **attributes)
 
 
+def round_step(span: float) -> float:
+    """A round step that gives three to seven ticks on an axis of that length."""
+    power = 10.0 ** math.floor(math.log10(span / 3.0))
+    return max(k * power for k in (1.0, 2.0, 5.0) if k * power <= span / 3.0)
+
+
 _MARKS = {
     "good": '<circle cx="6" cy="6" r="5"/><path class="in" d="M3.4 6.2 5.3 8 8.7 4.2"/>',
     "caution": '<path d="M6 .8 11.6 11H.4Z"/><path class="in" d="M6 4.4V7.4M6 8.8V9.6"/>',

@@ -10,6 +10,7 @@ from alula.base.arrays import Array
 from alula.predict.lattice_result import SpanLoad
 from alula.report.html import Html, join, tag
 from alula.report.numbers import compact
+from alula.report.pictures import round_step
 
 STYLE = (
     ".spanload{max-width:100%;height:auto}"
@@ -36,12 +37,12 @@ def span_load(load: SpanLoad, chord: float) -> Html:
     def y(v: float) -> float:
         return _TOP + (high - v) / (high - low) * (_HEIGHT - _TOP - _BOTTOM)
 
-    ticks, step = [], _step(high - low)
+    ticks, step = [], round_step(high - low)
     for k in range(math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9) + 1):
         at, kind = k * step, "axis" if k == 0 else "rule"
         ticks.append(_line(_LEFT, y(at), _WIDTH - 12.0, y(at), kind))
         ticks.append(_text(_LEFT - 5.0, y(at) + 4.0, compact(round(at, 6), 3), "end"))
-    step = _step(x1 - x0)
+    step = round_step(x1 - x0)
     for k in range(math.ceil(x0 / step - 1e-9), math.floor(x1 / step + 1e-9) + 1):
         at = x(k * step)
         ticks.append(_line(at, _HEIGHT - _BOTTOM, at, _HEIGHT - _BOTTOM + 4.0, "axis"))
@@ -79,12 +80,6 @@ def _range(values: Array) -> tuple[float, float]:
         return -0.1, 0.1
     pad = 0.06 * (high - low)
     return low - (pad if low < 0.0 else 0.0), high + (pad if high > 0.0 else 0.0)
-
-
-def _step(span: float) -> float:
-    """A round step that gives three to seven ticks."""
-    power = 10.0 ** math.floor(math.log10(span / 3.0))
-    return max(k * power for k in (1.0, 2.0, 5.0) if k * power <= span / 3.0)
 
 
 def _line(x1: float, y1: float, x2: float, y2: float, look: str) -> Html:

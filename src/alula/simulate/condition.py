@@ -110,7 +110,7 @@ def check_envelope(condition: Condition, envelope: Envelope, refused: bool) -> t
                 expected=f"{name} from {limits[0]:g} to {limits[1]:g}{units[name]}, the aircraft "
                 "file's envelope",
                 found=f"{name} = {value:.5g}{units[name]}",
-                do="Choose a condition inside, or ask for it in spite of the envelope.",
+                do="Choose a condition inside, or ask for it with --anyway (in_spite=True).",
             )
         )
     if messages and refused:

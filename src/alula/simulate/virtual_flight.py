@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from alula.base.arrays import Array, frozen
+from alula.base.messages import Message, warn
 from alula.model import AeroModel
 from alula.simulate.airframe import Airframe, core_model
 from alula.simulate.fly import SimulatedFlight, fly
@@ -19,6 +20,8 @@ from alula.simulate.virtual_maneuvers import Condition, VirtualManeuver
 from alula.simulate.virtual_plan import Plan
 from alula.simulate.virtual_sensing import generator
 from alula.simulate.wind import CosineGust, Turbulence
+
+_ROUNDING = 1e-6  # rad; a trim at its stop is there to rounding
 
 
 @dataclass(frozen=True)
@@ -64,15 +67,20 @@ def fly_maneuver(
 ) -> SimulatedFlight:
     """The true motion of one maneuver from its trim; nothing in it is random but turbulence.
 
-    Deflections stop at the control limits of the aircraft file. Raises BadInput where it diverges.
+    Deflections stop at the control limits of the aircraft file, with a warning. Raises BadInput
+    where it diverges.
     """
     t = times(plan, asked)
     frame, wind, V = airframe(plan, loading), np.array(plan.wind), asked.condition.V
     controls: dict[str, Array | float] = {**trim.controls, "thrust": trim.thrust}
     limits = dict(loading.aircraft.control_limits)
+    said: list[Message] = []
     for name, signal in asked.signals.items():
         low, high = limits.get(name, (-np.inf, np.inf))
-        controls[name] = np.clip(trim.controls[name] + signal.value(t), low, high)
+        wanted = trim.controls[name] + signal.value(t)
+        controls[name] = np.clip(wanted, low, high)
+        if np.max(np.abs(wanted - controls[name])) > _ROUNDING:
+            said.append(_at_stop(asked.maneuver.id, name, (low, high), wanted))
     same: dict[str, Any] = {
         "wind": wind,
         "substeps": max(1, int(np.ceil(1.0 / (plan.rate * plan.step) - 1e-9))),
@@ -106,7 +114,20 @@ def fly_maneuver(
         )  # fmt: skip
         parts.append(part)
         state = part.plant_states[-1]
-    return joined(parts)
+    flight = joined(parts)
+    return replace(flight, messages=(*said, *flight.messages))
+
+
+def _at_stop(id: str, control: str, limits: tuple[float, float], wanted: Array) -> Message:
+    scale, unit = (1.0, "") if control == "dt" else (np.degrees(1.0), " deg")
+    low, high = (scale * x for x in limits)
+    return warn(
+        "input_at_stop",
+        where=f"maneuver {id}, {control}",
+        expected=f"{low:.4g} to {high:.4g}{unit}, the aircraft file's limits",
+        found=f"{scale * wanted.min():.4g} to {scale * wanted.max():.4g}{unit} asked for",
+        do="It is flown against the stop. Take a smaller amplitude, or correct the limits.",
+    )
 
 
 def _hands(

@@ -12,6 +12,7 @@ from pydantic import Field, model_validator
 from alula.base.file_schema import Identifier, Quantity, ReadFile, Strict
 from alula.base.messages import BadInput
 from alula.base.project_messages import check_units, expand_paths, read_toml, validated
+from alula.model.formula_problems import formula_problems
 
 Positive = Annotated[float, Field(gt=0.0, le=1e6)]
 NotNegative = Annotated[float, Field(ge=0.0, le=1e6)]
@@ -247,7 +248,7 @@ def load_plan(path: Path | str) -> Plan:
     text, tree, sha256 = read_toml(path)
     expand_paths(tree, path, ("aircraft", "model"), "loadings", ("aircraft",))
     plan = validated(Plan, tree, path, text)
-    problems = check_units(plan, path)
+    problems = [*check_units(plan, path), *formula_problems(plan.identify, f"{path}: identify")]
     if problems:
         raise BadInput(*problems)
     plan._path, plan._sha256 = path.resolve(), sha256

@@ -101,12 +101,12 @@ def status(parameters: Sequence[Parameter]) -> str:
     if lost:
         return (
             f"not identifiable: {', '.join(lost)}. Fly a maneuver that excites them on their own, "
-            "or take a term out of the formula."
+            "or take a term out of the formula"
         )
     if weak:
         return (
             f"identified; weak: {', '.join(weak)}. Their error bars are over half the value: "
-            "more or longer maneuvers would narrow them."
+            "more or longer maneuvers would narrow them"
         )
     return "identified: every parameter is resolved"
 

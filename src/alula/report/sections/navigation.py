@@ -55,7 +55,7 @@ def _log(name: str, one: Navigation, figures: FigureStore) -> Html:
         tag("p", words[one.filter]),
         _sensors(one),
         tag("div", *grid, class_="grid"),
-        tag("h4", "Innovations: measured minus predicted, in standard deviations"),
+        tag("h4", "Size of the innovations (measured minus predicted), in standard deviations"),
         tag("div", *agreed, class_="grid"),
         class_="maneuver",
     )
