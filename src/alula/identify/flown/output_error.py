@@ -101,6 +101,17 @@ def identify_output_error(
         stabilize=stabilize or {},
         substeps=substeps,
     )
+    terms = [t.name(c) for c, formula in models.items() for t in parse(formula)]
+    # a project's first values of noises are for filter error
+    strange = [n for n in start or () if n not in terms and not n.startswith(("F_", "sigma_"))]
+    if strange:
+        raise refuse(
+            "unknown_parameter",
+            where="output error, start",
+            expected="terms of the model: " + ", ".join(terms),
+            found=", ".join(strange),
+            do="Correct the names.",
+        )
     values = {**start_values(learn, models, {**(fixed or {}), **(start or {})})}
     model = _model(models, values, learn[0])
     fit = fit_output_error(
