@@ -33,6 +33,7 @@ METHOD_PAGES = {
     "fe": "filter_error.md",
     "fd": "frequency_domain.md",
     "rls": "recursive.md",
+    "stall": "stall_identification.md",
 }
 
 

@@ -18,6 +18,7 @@ from alula.campaign.by_outputs import (
     LATERAL_OUTPUTS,
     TABLES,
     left_aside,
+    of_formulas,
     of_part,
     parts_of,
     searching,
@@ -98,9 +99,10 @@ def _part(
         s for s in states
         if all(s in m.outputs and np.isfinite(m.outputs[s]).any() for m in maneuvers)
     ]  # fmt: skip
+    tied = options.pop("tied", {})
     model = linear_flight_model(
         _steady(learn), models, controls=controls, states=states, outputs=outputs, total=True,
-        tied=options.pop("tied", None),
+        tied=tied,
     )  # fmt: skip
     records = [
         linear_record(
@@ -135,6 +137,8 @@ def _part(
         parameters=parameters,
         fits={k: replace(fit, formula="") for k, fit in found.fits.items()},
         formulas=dict(models),
+        fixed=of_formulas(options.get("fixed", {}), models),
+        tied=tied,
         messages=(*said, *found.messages, *turned),
         status=found.status
         + contradicted(turned)

@@ -17,6 +17,7 @@ from alula.identify.flown.output_error import identify_output_error
 from alula.identify.flown.problem import STATE_SETS, Setting
 from alula.identify.flown.usual_outputs import USUAL_OUTPUTS
 from alula.identify.merge import merged
+from alula.model import parse
 
 LATERAL_OUTPUTS = frozenset({"beta", "p", "r", "phi", "ay", "pdot", "rdot"})
 _NAMES: Mapping[str, frozenset[str]] = {  # coefficients, states and outputs by motion
@@ -72,7 +73,13 @@ def by_outputs(
             setting = Setting(flown, tuple(outputs), **{k: own[k] for k in _SETTING & own.keys()})
             rest = {k: own[k] for k in ("noise", "priors", "scales", "covariance") if k in own}
             found = carried(found, chosen, models, shifts, setting, **rest)
-        results.append(replace(found, formulas=found.formulas or models))
+        results.append(
+            replace(
+                found,
+                formulas=found.formulas or models,
+                fixed=found.fixed or of_formulas(own.get("fixed", {}), models),
+            )
+        )
     result = merged(results)
     said = (*messages, *left_aside(options, owns))
     return replace(result, messages=(*said, *result.messages))
@@ -177,6 +184,12 @@ def of_part(options: Mapping[str, Any], part: str) -> dict[str, Any]:
     if not out.get("noise", True):
         del out["noise"]
     return out
+
+
+def of_formulas(fixed: Mapping[str, float], models: Mapping[str, str]) -> dict[str, float]:
+    """Those of the fixed values that terms of the formulas have; not noises, say."""
+    terms = {t.name(c) for c, formula in models.items() for t in parse(formula)}
+    return {n: v for n, v in fixed.items() if n in terms}
 
 
 def left_aside(options: Mapping[str, Any], own: Sequence[Mapping[str, Any]]) -> list[Message]:

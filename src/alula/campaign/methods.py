@@ -22,6 +22,7 @@ from alula.identify.equation_error.recursive_least_squares import forgetting_of
 from alula.identify.flown.filter_error import STATES_OF, identify_flight_filter_error
 from alula.identify.flown.output_error import identify_output_error
 from alula.identify.flown.problem import STATE_SETS
+from alula.identify.flown.stall import ALONE, identify_stall
 from alula.identify.frequency.output_error import identify_frequency_output_error
 from alula.identify.frequency.regression import identify_frequency_regression
 from alula.identify.linear.filter_error import identify_filter_error
@@ -87,6 +88,11 @@ def method_name(name: str) -> str:
     )
 
 
+def takes_readings(name: str, options: Mapping[str, object]) -> bool:
+    """Whether the method compares with what sensors read, not with coefficients."""
+    return name in ("oe", "fe") or (name in LINEAR and options.get("equations") == "linear")
+
+
 def _equation_error(task: IdentifyTask) -> Identification:
     own = {k: v for k, v in task.options.items() if k in ("weighting", "common_constant", "scales")}
     choice = regression_choice({k: v for k, v in task.options.items() if k in REGRESSION})
@@ -129,6 +135,23 @@ def _output_error(task: IdentifyTask) -> Identification:
 
 def _filter_error(task: IdentifyTask) -> Identification:
     return by_outputs(task, identify_flight_filter_error, STATES_OF)
+
+
+def _stall(task: IdentifyTask) -> Identification:
+    models = {c: f for c, f in task.models.items() if c in ALONE}
+    data = [d for d in task.data if d.maneuver.aspect != "lateral"]
+    found = identify_stall(data, models, fixed=task.options.get("fixed", {}), truth=task.truth)
+    others = ", ".join(c for c in task.models if c not in ALONE)
+    if not others:
+        return found
+    said = note(
+        "model_not_served",
+        where="[identify.models]",
+        expected=f"formulas of {', '.join(ALONE)}",
+        found=others,
+        do="Nothing: these are left out. Identify them by another method.",
+    )
+    return replace(found, messages=(*found.messages, said))
 
 
 def _delays(task: IdentifyTask) -> Identification:
@@ -219,6 +242,7 @@ IDENTIFIERS: Mapping[str, Method] = {
         },
         _recursive,
     ),
+    "stall": Method("output error of a stall", {"fixed": "numbers"}, _stall),
 }
 
 # The same methods on the linear equations of flight, equations = "linear".

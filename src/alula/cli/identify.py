@@ -34,6 +34,7 @@ class Method(StrEnum):
     fe = "fe"
     fd = "fd"
     rls = "rls"
+    stall = "stall"
 
 
 def identify(
@@ -120,6 +121,8 @@ def result_of(job: Job) -> dict[str, Any]:
         ],
         "reference": {"S": plane.S, "b": plane.b, "c": plane.c},
         "reference_point": plane.reference_point.tolist(),
+        "fixed": dict(found.fixed),
+        "tied": {n: {"name": k, "factor": v} for n, (k, v) in found.tied.items()},
         "formulas": dict(found.formulas) or {c: f.formula for c, f in found.fits.items()},
         "maneuvers": {
             "learned": [m.id for m in job.checked.maneuvers if not m.held_out],

@@ -25,6 +25,10 @@ def summary(result: Identification) -> str:
         )
     lines += ["-" * _WIDTH, _header(result), "-" * _WIDTH]
     lines += [_row(p, _name_width(result)) for p in result.parameters]
+    given = [f"{n} = {v:.5g}" for n, v in result.fixed.items()]
+    given += [f"{n} = {k:.5g} {other}" for n, (other, k) in result.tied.items()]
+    if given:
+        lines += wrap("not estimated: " + ", ".join(given), _WIDTH, subsequent_indent="    ")
     lines += ["=" * _WIDTH, result.status]
     for name, fit in result.fits.items():
         if fit.diagnostics:

@@ -157,6 +157,8 @@ def identify_output_error(
         result,
         parameters=parameters,
         formulas=dict(models),
+        fixed={n: v for n, v in (fixed or {}).items() if n in terms},
+        tied=dict(tied or {}),
         messages=(*result.messages, *turned),
         status=result.status + "".join(f"; sign contradicted: {m.where}" for m in turned),
     )
