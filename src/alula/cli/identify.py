@@ -96,6 +96,8 @@ def identify(
 
 def result_of(job: Job) -> dict[str, Any]:
     """The envelope's `result`."""
+    from alula.identify.typical import flown_sum
+
     found, path = job.identification, job.reconstruction
     plane = job.checked.aircraft
     return {
@@ -114,6 +116,7 @@ def result_of(job: Job) -> dict[str, Any]:
                 "tied_to": [{"name": t.name, "weight": t.weight} for t in p.tied_to],
                 "unit": p.unit,
                 "vif": p.vif,
+                **({"means": flown} if (flown := flown_sum(p.name)) else {}),
                 **({} if p.bias is None else {"bias": p.bias}),
                 **({} if p.truth is None else {"truth": p.truth}),
             }

@@ -5,6 +5,7 @@ from __future__ import annotations
 from textwrap import wrap
 
 from alula.identify.result import Identification, Parameter
+from alula.identify.typical import flown_sum
 
 _WIDTH = 104
 
@@ -43,6 +44,10 @@ def summary(result: Identification) -> str:
         f"se: {result.uncertainty}; se white: as if residuals were white;\nthe interval takes "
         "Student's t with the degrees of freedom of coloured residuals."
     )
+    sums = {p.name: flown for p in result.parameters if (flown := flown_sum(p.name))}
+    if sums:
+        words = ", ".join(f"{name} is {flown}" for name, flown in sums.items())
+        lines += wrap(f"flight tells of the rates' derivatives: {words}.", _WIDTH)
     if any(p.bias is not None for p in result.parameters):
         lines.append("biased estimates: the interval includes the estimated bias, se does not.")
     return "\n".join(lines)
