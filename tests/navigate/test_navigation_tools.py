@@ -110,14 +110,22 @@ def test_power_train_books_what_the_motor_draws() -> None:
     assert 0.5 < np.sqrt(np.mean(error**2)) / np.mean(found.se_omega[late]) < 1.5
     assert np.sqrt(np.mean(error**2)) < 5.0
     # Eq. (3.41) to (3.43) integrated here, with the true speed
-    charge = 0.0
+    charge, volts, amperes = 0.0, np.full(len(t), np.nan), np.full(len(t), np.nan)
     for k in range(1, len(t)):
         left = 1.0 - charge / m.capacity
         U = m.U_empty + (m.U_full - m.U_empty) * left
         I = (throttle[k] * U - omega[k] / m.k_V) / (m.R_battery + m.R_esc + m.R_motor)  # noqa: E741
-        charge += throttle[k] * min(max(I, -m.I_regen), m.I_max) * 0.02
+        volts[k], amperes[k] = U, min(max(I, -m.I_regen), m.I_max)
+        charge += throttle[k] * amperes[k] * 0.02
     assert found.charge[-1] == pytest.approx(charge, rel=0.02)
     assert found.left[-1] == pytest.approx(1.0 - found.charge[-1] / m.capacity)
+    np.testing.assert_allclose(found.voltage[late], volts[late], rtol=1e-4)
+    # a speed that is off by what the filter leaves moves the current by that over k_V and R
+    slack = 5.0 * np.mean(found.se_omega[late]) / m.k_V / (m.R_battery + m.R_esc + m.R_motor)
+    assert np.abs(found.motor_current - amperes)[late].max() < slack
+    np.testing.assert_allclose(
+        found.current[late], throttle[late] * found.motor_current[late], rtol=1e-9
+    )
 
 
 def test_power_train_refuses_what_is_none() -> None:
