@@ -29,6 +29,13 @@ def test_dynamic_stall_tells_all_four():
         assert abs(p.value - p.truth) < 4.0 * p.se  # by chance one in 16 000
 
 
+def test_units():
+    found = identified(("dynamic",), 50)
+    units = {p.name: p.unit for p in found.parameters}
+    assert [units[n] for n in ("a1", "alpha_star", "tau1", "tau2")] == ["1/rad", "rad", "s", "s"]
+    assert (units["CL_alpha"], units["CL_0"], units["Cm_X"]) == ("1/rad", "1", "1")
+
+
 def test_quasi_steady_stall_tells_the_angle_and_not_the_delay():
     found = identified(("quasi-steady",), 50, gentle=True)
     assert found["alpha_star"].value == pytest.approx(0.374, rel=0.1)

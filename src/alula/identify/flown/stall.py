@@ -21,10 +21,12 @@ from alula.base.messages import refuse, warn
 from alula.identify.coefficients import CoefficientData
 from alula.identify.likelihood.optimizer import Minimum, Point, minimize
 from alula.identify.likelihood.parameters import Fitted, Whitened, assembled
-from alula.identify.result import Identification
+from alula.identify.result import Identification, Parameter
+from alula.identify.typical import unit
 from alula.model import parse
 
 NAMES = ("a1", "alpha_star", "tau1", "tau2")
+UNITS = ("1/rad", "rad", "s", "s")
 LOW = (1.0, 0.0, 1e-3, 0.0)  # 1/rad, rad, s, s
 HIGH = (200.0, 1.5, 5.0, 5.0)
 FIRST = (20.0, 0.0, 0.2, 0.1)
@@ -219,7 +221,14 @@ def identify_stall(
         "stall", problem.names, {**dict.fromkeys(NAMES, "stall"), **belongs}, blocks, found,
         fitted, dict(models), truth=truth,
     )  # fmt: skip
-    return replace(_told(result), fixed=known)
+    told = _told(result)
+    own = dict(zip(NAMES, UNITS, strict=True))
+    named = (replace(p, unit=own.get(p.name) or _unit(p)) for p in told.parameters)
+    return replace(told, parameters=tuple(named), fixed=known)
+
+
+def _unit(p: Parameter) -> str:
+    return "1" if p.name.endswith("_X") else unit(p.coefficient, p.name)
 
 
 def _check(data: Sequence[CoefficientData], fixed: Mapping[str, float]) -> None:
