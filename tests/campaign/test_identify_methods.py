@@ -190,3 +190,20 @@ def test_without_reconstruction_the_channels_are_the_readings() -> None:
     heard = np.isfinite(found["alpha"])
     assert heard.sum() == len(slow)  # interpolated samples are no readings
     assert found["alpha"][heard] == pytest.approx(values, abs=1e-15)
+
+
+def test_the_stall_takes_its_own_formulas_and_says_which_are_left() -> None:
+    """What of the stall holds is in tests/identify; here: the way from a project's options."""
+    alpha = 0.2 + 0.15 * np.sin(0.8 * T)
+    X = 0.5 * (1.0 - np.tanh(20.0 * (alpha - 0.25)))
+    CL = (0.3 + 4.5 * alpha) * (0.5 * (1.0 + np.sqrt(X))) ** 2 + 1e-3 * RNG.standard_normal(N)
+    stall = replace(DATA, coefficients={"CL": CL, "CY": CL}, variables={"alpha": alpha})
+    given = replace(
+        task({"fixed": {"tau1": 1e-3, "tau2": 0.0}}),
+        data=(stall,),
+        models={"CL": "1 + alpha", "CY": "1 + alpha"},
+    )
+    found = identify_by("stall", given)
+    assert found["alpha_star"].value == pytest.approx(0.25, abs=0.01)  # 1 ms of lag is none
+    assert found.fixed == {"tau1": 1e-3, "tau2": 0.0}
+    assert [m.found for m in found.messages if m.code == "model_not_served"] == ["CY"]

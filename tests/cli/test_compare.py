@@ -130,6 +130,33 @@ def test_output_error_is_judged_by_its_formulas(made: Results) -> None:
         assert other["r2"] == pytest.approx(ours["r2"], abs=0.02)  # two estimates of one flight
 
 
+def test_terms_that_were_not_estimated_count_in_the_judgment(made: Results, tmp_path: Path) -> None:
+    """Fixed where output error found it, a derivative changes nothing; tied, hardly anything."""
+    found = {p["name"]: p["value"] for p in json.loads(made.oe.read_text())["result"]["parameters"]}
+    folder = tmp_path / "held"
+    folder.mkdir()
+    for file in made.project.folder.iterdir():
+        (folder / file.name).write_bytes(file.read_bytes())
+    project = folder / made.project.path.name
+    factor = found["CL_de"] / found["Cm_de"]
+    project.write_text(
+        made.project.path.read_text()
+        + f"[identify.options]\nfixed = {{Cm_q = {found['Cm_q']!r}}}\n"
+        + f'tied = {{CL_de = "{factor!r}*Cm_de"}}\n'
+    )
+    held = tmp_path / "held.json"
+    ran = alula("identify", project, "--method", "oe", "--json", held, "--quiet")
+    assert ran.code == 0, ran.err
+    written = json.loads(held.read_text())["result"]
+    assert written["fixed"] == {"Cm_q": found["Cm_q"]}
+    assert written["tied"]["CL_de"]["name"] == "Cm_de"
+    judged = compared(made.oe, held, "--project", made.project.path)["judged"]
+    for coefficient in ("CL", "Cm"):
+        ours, other = judged[coefficient]["entries"]
+        # the same estimate but for two freedoms; without its term Cm would be far off
+        assert other["r2"] == pytest.approx(ours["r2"], abs=1e-4)
+
+
 def test_maneuvers_that_a_result_learned_from_are_named(made: Results, tmp_path: Path) -> None:
     project = tmp_path / "demo.toml"
     for file in made.project.folder.iterdir():

@@ -45,6 +45,28 @@ def test_two_collinear_regressors(small: SmallProject) -> None:
     assert "not identifiable: Cm_de, Cm_df." in text
 
 
+@pytest.mark.parametrize("method", ["oe", "fe", "fd"])
+def test_linear_equations_from_the_project_file(small: SmallProject, method: str) -> None:
+    """The whole way: options in the file, readings, linear search, report and model."""
+    options = 'equations = "linear"\nband_hz = [0.05, 1.5]\ndelayed = ["de"]\n'
+    small.edit("[identify.models]", f"[identify.options]\n{options}[identify.models]")
+    model, report = small.folder / "m.toml", small.folder / "r.html"
+    ran = small.identify("--method", method, "--model", model, "--report", report)
+    assert ran.code == 0, ran.err
+    truth = json.loads((small.folder / "truth.json").read_text())["parameters"]
+    for name in ("Cm_alpha", "Cm_q", "Cm_de", "CL_alpha"):
+        found = parameter(ran.envelope, name)
+        assert found["unit"] == "1/rad"
+        # linear equations about the mean flight of a maneuver through 6 deg: within a tenth
+        assert found["value"] == pytest.approx(truth[name], rel=0.1)
+    assert load_model(model).params["Cm_q"] == parameter(ran.envelope, "Cm_q")["value"]
+    assert ("delay_de" in report.read_text()) == (method == "fd")
+    delays = [p["name"] for p in ran.envelope["result"]["parameters"] if p["unit"] == "s"]
+    assert delays == (["delay_de"] if method == "fd" else [])
+    aside = {m["found"] for m in ran.messages("option_of_another_method")}
+    assert aside == (set() if method == "fd" else {"band_hz, delayed"})
+
+
 @pytest.mark.parametrize(("value", "tied"), [("0", []), ("10", ["Cm_0"])])
 def test_unexcited_parameter(small: SmallProject, value: str, tied: list[str]) -> None:
     """Flaps that rest: at zero they tell nothing, elsewhere they look like the constant term."""

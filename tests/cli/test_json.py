@@ -76,6 +76,7 @@ class Parameter(Strict):
     unit: str
     vif: float | None
     truth: float = 0.0
+    means: str = ""
 
 
 class Fit(Strict):
@@ -122,12 +123,19 @@ class Lengths(Strict):
     c: float = Field(gt=0.0)
 
 
+class Factor(Strict):
+    name: str
+    factor: float
+
+
 class Identified(Strict):
     method: str
     status: str
     uncertainty: str = Field(min_length=1)
     reference: Lengths
     reference_point: list[float] = Field(min_length=3, max_length=3)
+    fixed: dict[str, float]
+    tied: dict[str, Factor]
     formulas: dict[str, str]
     maneuvers: Parted
     parameters: list[Parameter]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import re
 import tomllib
 from pathlib import Path
@@ -32,6 +33,7 @@ METHOD_PAGES = {
     "fe": "filter_error.md",
     "fd": "frequency_domain.md",
     "rls": "recursive.md",
+    "stall": "stall_identification.md",
 }
 
 
@@ -57,6 +59,33 @@ def test_links_lead_somewhere(page: Path) -> None:
         if not there.exists() or (anchor and anchor not in anchors(there)):
             wrong.append(target)
     assert wrong == []
+
+
+def test_python_names_on_the_pages_are_there() -> None:
+    """Dotted names are imported; functions that are named bare are in the package of their page."""
+    missing = []
+    for page in [*ROOT.glob("docs/**/*.md")]:
+        text = page.read_text()
+        for name in re.findall(r"`(alula(?:\.\w+)+)(?![\w/])", text):
+            if not _there(name):
+                missing.append(f"{page.name}: {name}")
+        for name in re.findall(r"`(identify_\w+|\w+_responses|recursive_\w+)[`(]", text):
+            if not _there(f"alula.identify.{name}"):
+                missing.append(f"{page.name}: {name}")
+    assert missing == []
+
+
+def _there(name: str) -> bool:
+    parts = name.split(".")
+    for i in range(len(parts), 0, -1):
+        try:
+            found = importlib.import_module(".".join(parts[:i]))
+        except ImportError:
+            continue
+        for part in parts[i:]:
+            found = getattr(found, part, None)
+        return found is not None
+    return False
 
 
 def test_every_page_is_listed() -> None:

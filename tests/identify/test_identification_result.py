@@ -8,7 +8,7 @@ from identify_flights import maneuver
 
 from alula.base.messages import BadInput
 from alula.identify import identify_equation_error
-from alula.identify.typical import unit
+from alula.identify.typical import flown_sum, unit
 
 FORMULA = "1 + alpha + qhat + de + da"
 
@@ -41,6 +41,14 @@ def test_summary_is_complete(result):
     for word in ("Cm_alpha", "-20", "not identifiable", "not excited", FORMULA, "D-W", "truth"):
         assert word in text
     assert max(len(line) for line in text.splitlines()) <= 130
+
+
+def test_a_rate_s_derivative_is_called_the_sum_that_flight_tells(result):
+    assert "Cm_q is Cm_q + Cm_alphadot" in " ".join(result.summary().split())
+    assert flown_sum("Cn_r") == "Cn_r - Cn_betadot"
+    assert flown_sum("CL_q") == "CL_q + CL_alphadot"
+    for other in ("Cm_alpha", "Cn_p", "Cm_r", "q(0)[m1]", "F_q"):
+        assert flown_sum(other) is None
 
 
 def test_plot_shows_every_maneuver(result):

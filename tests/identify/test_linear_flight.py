@@ -30,7 +30,7 @@ FORMULAS = {
 }  # fmt: skip
 
 
-def nonlinear(states):
+def nonlinear(states, thrust_z=0.0, push=(0.0, 0.0, 0.0), arm=(0.0, 0.0, 0.0), trim=None):
     """Functions and inputs of a maneuver that is nothing but the steady flight."""
     n = 3
     steady = dict.fromkeys(STATES, 0.0) | {"V": V, "alpha": ALPHA, "theta": ALPHA + CLIMB}
@@ -45,12 +45,12 @@ def nonlinear(states):
         mass=M,
         inertia=INERTIA,
         speed_of_sound=np.full(n, 340.0),
-        force=np.tile([THRUST, 0.0, 0.0], (n, 1)),
-        moment=np.zeros((n, 3)),
-        arm=np.zeros(3),
+        force=np.tile([THRUST, 0.0, thrust_z], (n, 1)),
+        moment=np.tile(push, (n, 1)),
+        arm=np.array(arm),
     )
     functions = flight_functions(m, FORMULAS, states, ["q"])
-    trim = {
+    trim = trim or {
         "CD_0": (THRUST * np.cos(ALPHA) - M * G * np.sin(CLIMB)) / QS - 0.3 * ALPHA,
         "CL_0": (M * G * np.cos(CLIMB) - THRUST * np.sin(ALPHA)) / QS - 5.1 * ALPHA,
         "Cm_0": 1.1 * ALPHA,
@@ -90,6 +90,64 @@ def test_entries_are_the_slopes_of_the_nonlinear_equations(states, names, contro
         np.testing.assert_allclose(matrices.B[:, j], slope / (2 * h), atol=1e-7)
 
 
+@pytest.mark.parametrize(
+    ("states", "names", "controls"),
+    [
+        (("V", "alpha", "q", "theta"), ("CD", "CL", "Cm"), ("de",)),
+        (("beta", "p", "r", "phi"), ("CY", "Cl", "Cn"), ("da", "dr")),
+        (("alpha", "q"), ("CL", "Cm"), ("de",)),
+    ],
+)
+def test_total_states_have_the_formulas_constants(states, names, controls):
+    """Inclined engines off the center of gravity, moments about another point: the whole rates,
+    constants included, are those of the nonlinear equations to first order."""
+    z_force, push = -250.0, (0.0, 320.0, 0.0)
+    # without a formula the drag is what it was in steady flight: its arm would show
+    arm = (0.12, 0.0, -0.07) if len(states) == 4 else (0.0, 0.0, 0.0)
+    lift, pull = (THRUST * np.sin(ALPHA) - z_force * np.cos(ALPHA),
+                  THRUST * np.cos(ALPHA) + z_force * np.sin(ALPHA))  # fmt: skip
+    CD, CL = (pull - M * G * np.sin(CLIMB)) / QS, (M * G * np.cos(CLIMB) - lift) / QS
+    CX, CZ = CL * np.sin(ALPHA) - CD * np.cos(ALPHA), -CD * np.sin(ALPHA) - CL * np.cos(ALPHA)
+    trim = {
+        "CD_0": CD - 0.3 * ALPHA,
+        "CL_0": CL - 5.1 * ALPHA,
+        # no moment: that of the coefficient, of the arm, of the engines
+        "Cm_0": 1.1 * ALPHA - (arm[2] * CX - arm[0] * CZ + push[1] / QS) / C,
+    }
+    functions, x, u, p = nonlinear(states, z_force, push, arm, trim)
+    steady = SteadyFlight(
+        V, ALPHA, ALPHA + CLIMB, RHO, M, INERTIA, S, B, C, THRUST, G, z_force, push, arm
+    )
+    formulas = {c: FORMULAS[c] for c in names}
+    model = linear_flight_model(steady, formulas, controls=controls, states=states, total=True)
+    values = {**DERIVATIVES, **trim}
+    m = model.at(np.array([values[n] for n in model.parameters]))
+    assert {f"{c}_0" for c in names if "1" in FORMULAS[c]} <= set(model.parameters)
+    held = {"V": V, "theta": ALPHA + CLIMB, "alpha": ALPHA}
+    w = np.array([*(held.get(n, 0.0) for n in model.inputs), 1.0])
+    np.testing.assert_allclose(m.A @ x + m.B @ w, 0.0, atol=1e-11)  # it is steady
+    h = 1e-6
+    for i in range(len(x)):
+        step = np.eye(len(x))[i] * h
+        slope = functions.derivative(x + step, u, p) - functions.derivative(x - step, u, p)
+        np.testing.assert_allclose(m.A[:, i], slope / (2 * h), atol=1e-7)  # rounding, as above
+
+
+def test_a_tie_is_one_parameter_in_two_places():
+    steady = SteadyFlight(V, ALPHA, ALPHA, RHO, M, INERTIA, S, B, C)
+    formulas = {"Cl": "da + dr", "Cn": "beta"}
+    free = linear_flight_model(steady, formulas, controls=["da", "dr"], total=True)
+    tied = linear_flight_model(
+        steady, formulas, controls=["da", "dr"], total=True, tied={"Cl_dr": ("Cl_da", 0.1)}
+    )
+    assert tied.parameters == ("Cl_da", "Cn_beta")
+    at = dict(zip(free.parameters, (-0.2, -0.02, 0.07), strict=True))
+    assert list(at) == ["Cl_da", "Cl_dr", "Cn_beta"]
+    np.testing.assert_allclose(
+        tied.at(np.array([-0.2, 0.07])).B, free.at(np.array(list(at.values()))).B, rtol=1e-14
+    )
+
+
 def test_constants_and_refusals():
     steady = SteadyFlight(V, ALPHA, ALPHA, RHO, M, INERTIA, S, B, C)
     model = linear_flight_model(steady, {"Cm": "1 + alpha + de"}, controls=["de"])
@@ -99,3 +157,7 @@ def test_constants_and_refusals():
         linear_flight_model(steady, {"Cm": "alpha^2"}, controls=["de"])
     with pytest.raises(BadInput, match="unknown_coefficient"):
         linear_flight_model(steady, {"Cm": "alpha", "Cn": "beta"}, controls=["de"])
+    with pytest.raises(BadInput, match="unknown_state"):
+        linear_flight_model(steady, {"Cm": "alpha"}, controls=[], states=["beta"])
+    with pytest.raises(BadInput, match="no_state"):
+        linear_flight_model(steady, {"CD": "alpha", "Cm": "1"}, controls=[], states=["q"])

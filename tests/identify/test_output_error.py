@@ -124,6 +124,14 @@ def test_fixed_tied_bounded_and_prior(noisy) -> None:
     assert any(m.code == "at_bound" for m in result.messages)
     assert result["CX_alpha2"].value == pytest.approx(2.5, abs=4e-3)
     assert result["CX_alpha2"].se <= 1.01e-3
+    assert "not estimated: CX_0 = -0.03, CZ_q = 0.5 Cm_q" in result.summary()
+    model = identified_model(result, "held", Reference(S, SPAN, CHORD))
+    assert model.params["CX_0"] == -0.03  # the model has all terms of the formulas
+    assert model.params["CZ_q"] == pytest.approx(0.5 * model.params["Cm_q"])
+    assert set(model.names) == set(names(LONGITUDINAL))
+    spread = dict(zip(model.names, np.sqrt(np.diag(model.covariance)), strict=True))
+    assert spread["CX_0"] == 0.0
+    assert spread["CZ_q"] == pytest.approx(0.5 * spread["Cm_q"])
 
 
 def test_an_unexcited_control_is_not_identifiable(noisy) -> None:

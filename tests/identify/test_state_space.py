@@ -121,6 +121,27 @@ def test_control_that_stands_still_is_not_identifiable():
     assert "not_identifiable" in [m.code for m in got.messages]
 
 
+def test_held_out_motion_is_left_aside():
+    motion, _, _ = lateral(0.02)
+    wrong = replace(motion, maneuver=replace(motion.maneuver, id="unseen", held_out=True),
+                    pdot=-motion.pdot)  # fmt: skip
+    alone, both = (identify_state_space(m, "lateral") for m in ([motion], [motion, wrong]))
+    assert np.array_equal(alone.A, both.A)
+    assert [m.where for m in both.messages if m.code == "held_out"] == ["unseen"]
+    with pytest.raises(BadInput, match="no_maneuver"):
+        identify_state_space([wrong], "lateral")
+
+
+def test_summary_has_every_entry_with_its_verdict():
+    motion, _, _ = lateral(0.02)
+    got = identify_state_space([motion], "lateral")
+    lines = got.summary().splitlines()
+    for p in got.parameters:
+        (line,) = [x for x in lines if x.split()[:1] == [p.name]]
+        assert float(line.split()[1]) == pytest.approx(p.value, rel=1e-4)
+        assert line.endswith(p.verdict.replace("_", " "))
+
+
 def test_missing_control_and_no_motion_are_refused():
     motion, _, _ = lateral()
     with pytest.raises(BadInput, match="missing_control"):

@@ -16,10 +16,12 @@ from alula.navigate import (
     attitude_from_vectors,
     gravity_seen,
     power_train,
+    quaternion,
     rotations,
     wind_from,
 )
 from alula.navigate.field import world_magnetic_model
+from alula.navigate.result import euler_angles
 from navigate.recordings import FIELD, G, turning
 
 AIRCRAFT = Path(__file__).parents[2] / "aircraft"
@@ -40,6 +42,37 @@ def test_attitude_from_vectors_in_a_turn() -> None:
     # not corrected, gravity lies along the body's z: level, and too strong
     plain = attitude_from_vectors(-motion.force, np.einsum("nij,j->ni", R, FIELD), FIELD)
     assert np.all(plain.gain == 0.0)
+
+
+@pytest.mark.parametrize("theta", [0.5 * np.pi, -0.5 * np.pi, 1.5707, -1.5, 0.3, 0.0])
+def test_angles_of_any_attitude_are_that_attitude(theta: float) -> None:
+    """At 90 deg of pitch too, whatever the quaternion's sign; beside the matrix of three turns."""
+    for phi, psi in ((0.3, 0.7), (-2.9, 3.0), (0.0, -1.2), (3.1, 0.1)):
+        q = quaternion(phi, theta, psi)
+        for sign in (1.0, -1.0):
+            euler = euler_angles(sign * q[None])[0]
+            back = rotations(quaternion(*euler)[None])[0]
+            # rounding of a quaternion's components, which angles near the vertical do not widen
+            np.testing.assert_allclose(back, rotations(q[None])[0], atol=5e-15)
+            assert np.abs(euler).max() <= np.pi
+            if abs(theta) < 1.51:
+                np.testing.assert_allclose(euler, (phi, theta, psi), atol=1e-13)
+
+
+def test_sign_of_a_quaternion_means_nothing() -> None:
+    q = np.array([quaternion(0.2, 0.1, 1.0)] * 3)
+    flipped = q * np.array([[1.0], [-1.0], [1.0]])
+    velocity, air = np.tile([20.0, 5.0, 1.0], (3, 1)), np.tile([25.0, 0.05, 0.0], (3, 1))
+    one, other = wind_from(velocity, q, air), wind_from(velocity, flipped, air)
+    np.testing.assert_array_equal(one.wind, other.wind)
+    np.testing.assert_array_equal(one.covariance, other.covariance)
+    cov = np.diag([0.1, 0.1, 0.1])
+    for a, b in zip(
+        (air_from_wind(velocity, q, one.mean, cov)).__dict__.values(),
+        (air_from_wind(velocity, flipped, one.mean, cov)).__dict__.values(),
+        strict=True,
+    ):
+        np.testing.assert_array_equal(a, b)
 
 
 def test_wind_with_its_covariance() -> None:
@@ -110,14 +143,22 @@ def test_power_train_books_what_the_motor_draws() -> None:
     assert 0.5 < np.sqrt(np.mean(error**2)) / np.mean(found.se_omega[late]) < 1.5
     assert np.sqrt(np.mean(error**2)) < 5.0
     # Eq. (3.41) to (3.43) integrated here, with the true speed
-    charge = 0.0
+    charge, volts, amperes = 0.0, np.full(len(t), np.nan), np.full(len(t), np.nan)
     for k in range(1, len(t)):
         left = 1.0 - charge / m.capacity
         U = m.U_empty + (m.U_full - m.U_empty) * left
         I = (throttle[k] * U - omega[k] / m.k_V) / (m.R_battery + m.R_esc + m.R_motor)  # noqa: E741
-        charge += throttle[k] * min(max(I, -m.I_regen), m.I_max) * 0.02
+        volts[k], amperes[k] = U, min(max(I, -m.I_regen), m.I_max)
+        charge += throttle[k] * amperes[k] * 0.02
     assert found.charge[-1] == pytest.approx(charge, rel=0.02)
     assert found.left[-1] == pytest.approx(1.0 - found.charge[-1] / m.capacity)
+    np.testing.assert_allclose(found.voltage[late], volts[late], rtol=1e-4)
+    # a speed that is off by what the filter leaves moves the current by that over k_V and R
+    slack = 5.0 * np.mean(found.se_omega[late]) / m.k_V / (m.R_battery + m.R_esc + m.R_motor)
+    assert np.abs(found.motor_current - amperes)[late].max() < slack
+    np.testing.assert_allclose(
+        found.current[late], throttle[late] * found.motor_current[late], rtol=1e-9
+    )
 
 
 def test_power_train_refuses_what_is_none() -> None:

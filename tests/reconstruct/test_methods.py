@@ -1,5 +1,8 @@
 """Filters, smoother, output error and no filter: what each promises."""
 
+import re
+import tomllib
+from pathlib import Path
 from typing import get_args
 
 import made
@@ -152,6 +155,48 @@ def test_a_walk_follows_a_drifting_bias():
     column = walking.segments[0].state_names.index("b_az")
     error = walking.segments[0].states[:, column] - made.BIAS[2] - drift
     assert np.sqrt(np.mean((error / walking.segments[0].states_se[:, column]) ** 2)) < 2.0
+
+
+def walk_of(t, random):
+    """A random walk from zero, one per square root of a second."""
+    steps = np.sqrt(np.diff(t)) * random.standard_normal(len(t) - 1)
+    return np.concatenate([[0.0], np.cumsum(steps)])
+
+
+@pytest.mark.parametrize("method", ["ekf", "ukf"])
+def test_van_den_hoeks_states_as_the_page_has_them(method):
+    """14 states; upwash and accelerometers drift as stated, and the errors are as stated."""
+    page = Path(__file__).parents[2] / "docs/methods/flight_path_reconstruction.md"
+    (block,) = re.findall(r"```toml\n(.*?)```", page.read_text(), re.S)
+    asked = tomllib.loads(block)["reconstruct"]
+    recipe = made.Recipe(duration=40.0, wind=(0.0, 0.0, 0.0), sensors=made.AIR)
+    flight, truth = made.record(recipe)
+    t, random = flight["az"].t, np.random.default_rng(5)
+    true = {"k_alpha": 0.1 + 1e-3 * walk_of(t, random)}
+    alpha = flight["alpha"].values + true["k_alpha"] * truth.air(t)[:, 1]
+    flight = made.replaced(flight, "alpha", Channel("alpha", t, alpha, "rad", "made"))
+    for i, name in enumerate(("ax", "ay", "az")):
+        drift = 2e-3 * walk_of(t, random)
+        true[f"b_{name}"] = made.BIAS[i] + drift
+        moved = Channel(name, t, flight[name].values + drift, "m/s2", "made")
+        flight = made.replaced(flight, name, moved)
+    result, _ = made.solve(recipe, flight, **{**asked, "filter": method})
+    (segment,) = result.segments
+    assert segment.state_names == (
+        "h", "u", "v", "w", "phi", "theta", "psi",
+        "b_ax", "b_ay", "b_az", "b_p", "b_q", "b_r", "k_alpha",
+    )  # fmt: skip
+    off = []
+    for name, values in true.items():
+        i = segment.state_names.index(name)
+        off.append((segment.states[:, i] - values) / segment.states_se[:, i])
+        assert np.ptp(segment.states[:, i]) > 0.2 * np.ptp(values), name  # no constant
+    # Four drifts of 40 s, each known anew every few: some twenty errors of one standard deviation,
+    # whose rms scatters by 0.16.
+    assert 0.5 < np.sqrt(np.mean(np.square(off))) < 1.5
+    for i, name in enumerate(("b_p", "b_q", "b_r")):
+        value, se = made.constants(result)[name]
+        assert abs(value - made.BIAS[3 + i]) < 4.0 * se
 
 
 @pytest.mark.parametrize("share", ["all", "log", "maneuver"])

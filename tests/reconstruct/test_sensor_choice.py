@@ -6,6 +6,7 @@ import made
 import numpy as np
 import pytest
 
+from alula.base.messages import BadInput
 from alula.flight import Channel
 
 TRUE = dict(
@@ -132,7 +133,8 @@ def test_heading_through_south_is_no_jump():
     assert np.abs(heading.measured - heading.fitted).max() < 6.0 * made.SIGMA["psi"]
 
 
-def test_latitude_and_longitude_are_local_meters():
+@pytest.mark.parametrize("case", ["plain", "date line", "holes"])
+def test_latitude_and_longitude_are_local_meters(case):
     recipe = made.Recipe(duration=20.0)
     flight, truth = made.record(recipe)
     # Radii of WGS-84 at 49 deg N and 1000 m by their definition, Dittrich 2016, Eq. (2.3) to (2.5).
@@ -142,7 +144,21 @@ def test_latitude_and_longitude_are_local_meters():
     channels = {k: c for k, c in flight.channels.items() if k not in ("north", "east")}
     north, east = flight["north"], flight["east"]
     channels["lat"] = Channel("lat", north.t, phi + north.values / meridian, "rad", "made")
-    channels["lon"] = Channel("lon", east.t, 0.29 + east.values / prime, "rad", "made")
+    longitude = 0.29 + east.values / prime
+    if case == "date line":  # crossed within the maneuver
+        longitude += np.pi - 0.29 - 0.5 * np.ptp(east.values) / prime
+        longitude = np.arctan2(np.sin(longitude), np.cos(longitude))
+        assert np.ptp(longitude) > 6.0
+    channels["lon"] = Channel("lon", east.t, longitude, "rad", "made")
+    if case == "holes":  # no fix at first, and a barometer that starts later
+        for name in ("lat", "h"):
+            values = channels[name].values.copy()
+            values[:3] = np.nan
+            channels[name] = replace(channels[name], values=values)
+        flight = made.replaced(flight, "h", channels["h"])
+        first = replace(north, values=np.where(np.isfinite(channels["lat"].values),
+                                               north.values, np.nan))  # fmt: skip
+        flight = made.replaced(flight, "north", first)
     local, _ = made.solve(recipe, flight)
     geodetic = made.spec(
         [s for s in made.ALL if s not in ("north", "east")],
@@ -172,6 +188,34 @@ def test_duplicate_sensors_are_compared():
     broken = replace(twin, values=np.random.default_rng(1).normal(0.0, 0.1, len(alpha.t)))
     result, _ = made.solve(recipe, made.replaced(flight, "alpha_2", broken))
     assert "duplicate_sensors_disagree" in {m.code for m in result.messages}
+
+
+def test_a_longitude_without_any_latitude_is_refused():
+    recipe = made.Recipe(duration=10.0, sensors=made.AIR)
+    flight, _ = made.record(recipe)
+    lon = Channel("lon", flight["h"].t, 0.3 + 1e-6 * flight["h"].t, "rad", "made")
+    spec = made.spec(made.AIR)
+    maneuver = made.Maneuver("m", "made", "", 0.0, 10.0)
+    with pytest.raises(BadInput, match="latitude"):
+        made.reconstruct(
+            {"made": replace(flight, channels={**flight.channels, "lon": lon})}, [maneuver],
+            made.aircraft(recipe), spec,
+        )  # fmt: skip
+
+
+def test_attitudes_a_turn_apart_are_the_same_and_heights_are_compared():
+    recipe = made.Recipe(duration=15.0, psi0=np.pi - 0.05)
+    flight, _ = made.record(recipe)
+    psi, h = flight["psi"], flight["h"]
+    wrapped = np.arctan2(np.sin(psi.values), np.cos(psi.values))
+    assert np.ptp(wrapped) > 6.0
+    both = made.replaced(flight, "psi_2", Channel("psi_2", psi.t, wrapped + 0.01, "rad", "made"))
+    slow = Channel("h_gps", h.t[::10], h.values[::10] + 47.0, "m", "made")  # the geoid
+    result, _ = made.solve(recipe, made.replaced(both, "h_gps", slow))
+    said = {m.where.split(", ")[1]: m for m in result.messages if m.code == "duplicate_sensors"}
+    assert "offset 0.01 rad" in said["psi and psi_2"].found
+    assert "offset 47 m" in said["h and h_gps"].found
+    assert "duplicate_sensors_disagree" not in {m.code for m in result.messages}
 
 
 def test_wind_asked_for_without_ground_speed_is_not_observable():

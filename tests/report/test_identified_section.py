@@ -80,6 +80,26 @@ def test_bias_stands_beside_the_value_where_a_method_has_one() -> None:
     assert "‘se’: block bootstrap" in text
 
 
+def test_sums_of_rates_and_terms_that_were_given_are_said() -> None:
+    report = example()
+    named = [replace(p, name=p.name.removesuffix("hat")) for p in identified(report).parameters]
+    found = replace(
+        identified(report),
+        parameters=tuple(named),
+        fixed={"Cm_df": -0.25},
+        tied={"Cl_dr": ("Cl_da", -0.06)},
+    )
+    text = render(replace(report, identification=found))
+    rates = [p.name for p in named if p.name.endswith(("_q", "_r"))]
+    assert rates
+    for name in rates:
+        lag = "alphadot" if name.endswith("_q") else "betadot"
+        assert re.search(rf"{name} is {name} . {name[:-2]}_{lag}", text)
+    assert "Cm_df = −0.25" in text
+    assert "Cl_dr = −0.0600 Cl_da" in text
+    assert "Not estimated" not in render(report)
+
+
 def test_all_of_it_draws_without_complaint(
     visit: Callable[..., Opened], recursive: ReportInput
 ) -> None:

@@ -6,6 +6,7 @@ explained in docs/project_file.md.
 
 from __future__ import annotations
 
+from datetime import date
 from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Literal
@@ -219,13 +220,17 @@ class NavigateSpec(Strict):
     """How `alula navigate` filters a log."""
 
     filter: Literal["joint", "pair"] = "joint"
-    field: list[float] | None = Field(
+    field: (
+        Annotated[list[float], Field(min_length=3, max_length=3)]
+        | Literal["world_magnetic_model"]
+        | None
+    ) = Field(
         default=None,
-        min_length=3,
-        max_length=3,
-        description="Earth's magnetic field there: north, east, down; none: no magnetometer",
+        description="Earth's magnetic field there: north, east, down; or that of the World "
+        "Magnetic Model at the log's first position; none: no magnetometer",
     )
     field_unit: str = "uT"
+    day: date | None = Field(default=None, description="of the flight, for that model")
     gust: float = Field(default=1.0, ge=0, description="turbulence, standard deviation, m/s")
     gust_length: float = Field(default=200.0, gt=0, description="its scale length, m")
     sensors: dict[str, SensorSpec] = Field(
@@ -234,8 +239,8 @@ class NavigateSpec(Strict):
 
     @property
     def field_si(self) -> tuple[float, float, float] | None:
-        """The field, T."""
-        if self.field is None:
+        """The field where it is stated, T."""
+        if self.field is None or isinstance(self.field, str):
             return None
         scale = to_si(self.field_unit, where="navigate.field_unit").scale
         return scale * self.field[0], scale * self.field[1], scale * self.field[2]

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from alula.base.messages import refuse
+from alula.base.messages import Message, note, refuse
 from alula.campaign.identify_task import IdentifyTask
 from alula.campaign.options import bad_option, factors, one_of, priors_of
 from alula.identify import Identification
@@ -18,8 +18,15 @@ from alula.identify.flown.problem import STATE_SETS, Setting
 from alula.identify.flown.usual_outputs import USUAL_OUTPUTS
 from alula.identify.merge import merged
 from alula.identify.parameter_unit import with_units
+from alula.model import parse
 
 LATERAL_OUTPUTS = frozenset({"beta", "p", "r", "phi", "ay", "pdot", "rdot"})
+_NAMES: Mapping[str, frozenset[str]] = {  # coefficients, states and outputs by motion
+    "longitudinal": frozenset({*LONGITUDINAL, "V", "alpha", "theta", "q", "ax", "az", "qdot"}),
+    "lateral": frozenset({"CY", "Cl", "Cn", *LATERAL_OUTPUTS}),
+}
+TABLES = frozenset({"start", "fixed", "tied", "bounds", "priors", "stabilize", "noise", "scales"})
+LISTS = frozenset({"biases", "noisy"})  # options that hold names, besides `outputs`
 
 
 def by_outputs(
@@ -31,36 +38,32 @@ def by_outputs(
 
     sets: the states of a motion, by its name.
     """
-    options = dict(task.options)
+    options = searching(task.options)
+    options.pop("equations", None)
     states = options.pop("states", "auto")
     asked = options.pop("outputs", None)
     if isinstance(states, str):
         one_of("states", states, ("auto", *sets))
-    if "algorithm" in options:
-        one_of("algorithm", options["algorithm"], ("gauss_newton", "levenberg_marquardt"))
-    options |= {k: f(options[k]) for k, f in (("tied", factors), ("priors", priors_of))
-                if k in options}  # fmt: skip
     if options.get("covariance", "diagonal") != "diagonal":
         one_of("covariance", options["covariance"], ("diagonal", "full"))
         if "noise" in options:
             raise bad_option("covariance", "diagonal, as noise is given", "'full'")
-    if "bounds" in options:
-        options["bounds"] = {k: tuple(v) for k, v in options["bounds"].items()}
     one_of("initial", options.get("initial", "estimate"), ("estimate", "measured"))
     if "substeps" in options:
         if options["substeps"] not in range(1, 101):
             raise bad_option("substeps", "a whole number from 1 to 100", repr(options["substeps"]))
         options["substeps"] = int(options["substeps"])
     maneuvers, messages, shifts = task.measure()
-    results = []
-    parts = _parts(task.models) if states == "auto" else [(_set_of(states), dict(task.models))]
+    results, owns = [], []
+    parts = parts_of(task.models) if states == "auto" else [(_set_of(states), dict(task.models))]
     for name, models in parts:
-        serving = _serving(maneuvers, models)
+        chosen = serving(maneuvers, models)
         flown = tuple(sets[name] if isinstance(states, str) else states)
-        outputs = _outputs(name, flown, asked, serving, split=states == "auto")
-        own = _of_part(options, models, outputs, alone=len(parts) == 1)
+        outputs = _outputs(name, flown, asked, chosen, split=states == "auto")
+        own = of_part(options, name if states == "auto" else "")
+        owns.append(own)
         found = identify(
-            serving,
+            chosen,
             models,
             states=flown,
             outputs=outputs,
@@ -70,16 +73,38 @@ def by_outputs(
         if identify is identify_output_error:
             setting = Setting(flown, tuple(outputs), **{k: own[k] for k in _SETTING & own.keys()})
             rest = {k: own[k] for k in ("noise", "priors", "scales", "covariance") if k in own}
-            found = carried(found, serving, models, shifts, setting, **rest)
-        results.append(with_units(replace(found, formulas=found.formulas or models)))
+            found = carried(found, chosen, models, shifts, setting, **rest)
+        results.append(
+            with_units(
+                replace(
+                    found,
+                    formulas=found.formulas or models,
+                    fixed=found.fixed or of_formulas(own.get("fixed", {}), models),
+                )
+            )
+        )
     result = merged(results)
-    return replace(result, messages=(*messages, *result.messages))
+    said = (*messages, *left_aside(options, owns))
+    return replace(result, messages=(*said, *result.messages))
+
+
+def searching(given: Mapping[str, Any]) -> dict[str, Any]:
+    """The options, those of a search as its functions take them. Raises BadInput."""
+    options = dict(given)
+    if "algorithm" in options:
+        one_of("algorithm", options["algorithm"], ("gauss_newton", "levenberg_marquardt"))
+    kinds: dict[str, Callable[[Any], Any]] = {
+        "tied": factors,
+        "priors": priors_of,
+        "bounds": lambda x: {k: tuple(v) for k, v in x.items()},
+    }
+    return {k: kinds[k](v) if k in kinds else v for k, v in options.items()}
 
 
 _SETTING = {"fixed", "tied", "initial", "biases", "common_constant", "stabilize", "substeps"}
 
 
-def _parts(models: Mapping[str, str]) -> list[tuple[str, dict[str, str]]]:
+def parts_of(models: Mapping[str, str]) -> list[tuple[str, dict[str, str]]]:
     """Models by the motion that they belong to."""
     long = {c: f for c, f in models.items() if c in LONGITUDINAL}
     lateral = {c: f for c, f in models.items() if c not in LONGITUDINAL}
@@ -94,7 +119,7 @@ def _set_of(states: str | Sequence[str]) -> str:
     return fits[0] if fits else "six"
 
 
-def _serving(
+def serving(
     maneuvers: Sequence[MeasuredManeuver], models: Mapping[str, str]
 ) -> list[MeasuredManeuver]:
     """The maneuvers of the models' aspect; all where models of both are flown together."""
@@ -142,26 +167,47 @@ def _outputs(
     return found
 
 
-def _of_part(
-    options: Mapping[str, Any], models: Mapping[str, str], outputs: Collection[str], alone: bool
-) -> dict[str, Any]:
-    """The options that belong to one part of the models, where there are two."""
-    if alone:
-        return dict(options)
+def of_part(options: Mapping[str, Any], part: str) -> dict[str, Any]:
+    """The options without names that belong to the other motion, which is 'lateral' for the
+    'longitudinal' and the other way round; a name of neither stays and is refused further on.
+    """
+    other = _NAMES.get({"longitudinal": "lateral", "lateral": "longitudinal"}.get(part, ""), ())
 
     def mine(name: str) -> bool:
         head = name.split("[")[0].split("(")[0]
         for kind in ("b_", "F_", "sigma_"):
             head = head.removeprefix(kind)
-        return head in outputs or head.split("_")[0] in models
+        return head not in other and head.split("_")[0] not in other
 
     out = dict(options)
-    for key in ("start", "fixed", "tied", "bounds", "priors", "stabilize", "noise"):
-        if key in out:
-            out[key] = {n: v for n, v in out[key].items() if mine(n)}
+    for key in TABLES & out.keys():
+        out[key] = {n: v for n, v in out[key].items() if mine(n)}
+    for key in LISTS & out.keys():
+        out[key] = [n for n in out[key] if mine(n)]
     if not out.get("noise", True):
         del out["noise"]
-    for key in ("biases", "noisy"):
-        if key in out:
-            out[key] = [n for n in out[key] if n in outputs]
     return out
+
+
+def of_formulas(fixed: Mapping[str, float], models: Mapping[str, str]) -> dict[str, float]:
+    """Those of the fixed values that terms of the formulas have; not noises, say."""
+    terms = {t.name(c) for c, formula in models.items() for t in parse(formula)}
+    return {n: v for n, v in fixed.items() if n in terms}
+
+
+def left_aside(options: Mapping[str, Any], own: Sequence[Mapping[str, Any]]) -> list[Message]:
+    """A note on names that went to none of the parts, whose options are `own`."""
+    every = [f"{k}.{n}" for k in sorted((TABLES | LISTS) & options.keys()) for n in options[k]]
+    gone = [e for e in every if not any(e.split(".", 1)[1] in o.get(e.split(".", 1)[0], ())
+                                        for o in own)]  # fmt: skip
+    if not gone:
+        return []
+    return [
+        note(
+            "option_left_aside",
+            where="[identify.options]",
+            expected="names of the models that are identified now",
+            found=", ".join(gone),
+            do="Nothing: they belong to the motion whose models were left out.",
+        )
+    ]

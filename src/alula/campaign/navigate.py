@@ -14,6 +14,7 @@ from alula.base.arrays import Array
 from alula.base.messages import Message, note, refuse, warn
 from alula.base.project import Project
 from alula.campaign.check import Checked, Progress, check_project
+from alula.campaign.field import field_of
 from alula.flight import Flight
 from alula.navigate import (
     JointSettings,
@@ -145,7 +146,10 @@ def navigate_flight(
                 do="Nothing: without it the wind across is not known before the flight turns.",
             )
         )
-    field = spec.field_si
+    field = None
+    if "field" in kinds or kind == "pair":
+        field, by_model = field_of(spec, flight)
+        said += by_model
     start, heading_said = first_state(
         samples.inertial, readings, None if field is None else np.array(field),
         reconstruct.gravity, samples.heading,

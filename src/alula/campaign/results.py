@@ -152,6 +152,9 @@ def _result(path: Path, raw: bytes, file: SourceFile) -> Source:
         entries = {str(p["name"]): _entry(p) for p in found["parameters"]}
         formulas = {str(k): str(v) for k, v in found.get("formulas", {}).items()}
         method, status = str(found["method"]), str(found["status"])
+        if method == "stall":  # its formulas are the attached flow's alone
+            formulas = {}
+        held = _held(found, entries)
         words = str(found.get("uncertainty", ""))
         hashes = {str(f["sha256"]) for f in tree.get("inputs", [])}
         learned = {str(id) for id in found.get("maneuvers", {}).get("learned", [])}
@@ -168,7 +171,7 @@ def _result(path: Path, raw: bytes, file: SourceFile) -> Source:
             return "no"
         return "yes" if m.id in learned else "no"
 
-    return Source(file, column, _predictor(column), saw, frame)
+    return Source(file, column, _predictor(column, held), saw, frame)
 
 
 def _frame(found: Mapping[str, Any]) -> Frame:
@@ -183,8 +186,19 @@ def _frame(found: Mapping[str, Any]) -> Frame:
     return Frame(Reference(S, b, c), np.array([x, y, z]))
 
 
-def _predictor(column: Column) -> Predict:
-    values = {n: e.value for n, e in column.entries.items() if math.isfinite(e.value)}
+def _held(found: Mapping[str, Any], entries: Mapping[str, Entry]) -> dict[str, float]:
+    """Values of the terms that were not estimated: fixed, or tied to others."""
+    out = {str(n): float(v) for n, v in found.get("fixed", {}).items()}
+    for n, tie in found.get("tied", {}).items():
+        of = str(tie["name"])
+        value = out[of] if of in out else entries[of].value
+        out[str(n)] = float(tie["factor"]) * value
+    return out
+
+
+def _predictor(column: Column, held: Mapping[str, float]) -> Predict:
+    every = {n: e.value for n, e in column.entries.items()} | dict(held)
+    values = {n: v for n, v in every.items() if math.isfinite(v)}
 
     def predict(d: CoefficientData) -> dict[str, Array]:
         out = {}

@@ -24,7 +24,7 @@ from alula.campaign.job import (
 )
 from alula.campaign.learned import LEARNED, learned_from
 from alula.campaign.measured import measured_maneuvers
-from alula.campaign.methods import identify_by
+from alula.campaign.methods import identify_by, takes_readings
 from alula.campaign.named import named
 from alula.campaign.validation_case import case_of, unequal_thrust
 from alula.flight import Maneuver
@@ -198,7 +198,7 @@ def _repeated(
                if not d.maneuver.held_out]  # fmt: skip
     ids = {d.maneuver.id for _, d in learned}
     readings: tuple[MeasuredManeuver, ...] = ()
-    if method in ("oe", "fe"):
+    if takes_readings(method, checked.project.identify.options):
         every, _, _ = measured_maneuvers(checked, reconstruction)
         readings = tuple(m for m in every if m.maneuver.id in ids)
 

@@ -34,6 +34,7 @@ class Method(StrEnum):
     fe = "fe"
     fd = "fd"
     rls = "rls"
+    stall = "stall"
 
 
 def identify(
@@ -95,6 +96,8 @@ def identify(
 
 def result_of(job: Job) -> dict[str, Any]:
     """The envelope's `result`."""
+    from alula.identify.typical import flown_sum
+
     found, path = job.identification, job.reconstruction
     plane = job.checked.aircraft
     return {
@@ -113,6 +116,7 @@ def result_of(job: Job) -> dict[str, Any]:
                 "tied_to": [{"name": t.name, "weight": t.weight} for t in p.tied_to],
                 "unit": p.unit,
                 "vif": p.vif,
+                **({"means": flown} if (flown := flown_sum(p.name)) else {}),
                 **({} if p.bias is None else {"bias": p.bias}),
                 **({} if p.truth is None else {"truth": p.truth}),
             }
@@ -120,6 +124,8 @@ def result_of(job: Job) -> dict[str, Any]:
         ],
         "reference": {"S": plane.S, "b": plane.b, "c": plane.c},
         "reference_point": plane.reference_point.tolist(),
+        "fixed": dict(found.fixed),
+        "tied": {n: {"name": k, "factor": v} for n, (k, v) in found.tied.items()},
         "formulas": dict(found.formulas) or {c: f.formula for c, f in found.fits.items()},
         "maneuvers": {
             "learned": [m.id for m in job.checked.maneuvers if not m.held_out],

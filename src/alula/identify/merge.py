@@ -35,6 +35,8 @@ def merged(results: Sequence[Identification]) -> Identification:
         messages=tuple(dict.fromkeys(m for r in results for m in r.messages)),
         labels={k: v for r in results for k, v in r.labels.items()},
         formulas={k: v for r in results for k, v in r.formulas.items()},
+        fixed={k: v for r in results for k, v in r.fixed.items()},
+        tied={k: v for r in results for k, v in r.tied.items()},
     )
 
 

@@ -13,6 +13,7 @@ from alula.identify.coefficients import CoefficientData
 from alula.identify.result import Identification, Parameter
 from alula.identify.typical import constant_name
 from alula.model import AeroModel, Reference, aero_model, parse
+from alula.model.stall import Stall
 
 
 def identified_model(
@@ -31,8 +32,10 @@ def identified_model(
     constant_of: the maneuver whose constant terms to take, where maneuvers have their own; None
     takes their mean. axes: None for those of the result's coefficients; where both sets are there,
     stability axes. data: what was identified from; the range of each variable becomes the model's
-    range of validity. A parameter that nothing excited is left out, and the provenance says so.
-    Raises BadInput where parameters are tied to one another: then no values exist to choose.
+    range of validity. Terms that were fixed or tied to others come with these values. A parameter
+    that nothing excited is left out, and the provenance says so. A stall becomes the model's
+    `stall`. Raises BadInput where parameters are tied to one another by the data, or the flight did
+    not tell some parameter of a stall: then no values exist to choose.
     """
     asked = dict(result.formulas) or {c: fit.formula for c, fit in result.fits.items()}
     chosen = axes or ("stability" if {"CD", "CL"} & asked.keys() else "body")
@@ -48,6 +51,7 @@ def identified_model(
         )
     formulas: dict[str, str] = {}
     rows: dict[str, Array] = {}
+    held: dict[str, float] = {}
     left_out = []
     for coefficient, formula in asked.items():
         if coefficient in foreign:
@@ -55,12 +59,18 @@ def identified_model(
         kept = []
         for term in parse(formula):
             label = term.name(coefficient)
-            row = _row(result.parameters, label, label == constant_name(coefficient), constant_of)
+            source, factor = result.tied.get(label, (label, 1.0))
+            row: Array | None = np.zeros(len(result.parameters))
+            if source in result.fixed:
+                held[label] = factor * result.fixed[source]
+            else:
+                constant = source == constant_name(coefficient)
+                row = _row(result.parameters, source, constant, constant_of)
             if row is None:
                 left_out.append(label)
             else:
                 kept.append(term.formula)
-                rows[label] = row
+                rows[label] = factor * row
         if kept:
             formulas[coefficient] = " + ".join(kept)
     if not rows:
@@ -75,7 +85,10 @@ def identified_model(
     used = np.flatnonzero(np.any(transform != 0.0, axis=0))
     transform = transform[:, used]
     values = transform @ np.array([result.parameters[i].value for i in used])
+    values += np.array([held.get(label, 0.0) for label in rows])
     origin = {"method": result.method, **(provenance or {})}
+    if held:
+        origin["not estimated"] = "fixed: " + ", ".join(held)
     if left_out:
         origin["left out"] = "not excited: " + ", ".join(left_out)
     return aero_model(
@@ -88,6 +101,33 @@ def identified_model(
         reference_point=reference_point,
         validity=_ranges(data),
         provenance=origin,
+        stall=_stall(result, name),
+    )
+
+
+def _stall(result: Identification, name: str) -> Stall | None:
+    """The separation of an identified stall, of the whole wing."""
+    if result.method != "stall":
+        return None
+    values = {p.name: p.value for p in result.parameters} | dict(result.fixed)
+    unknown = [n for n in ("a1", "alpha_star", "tau1", "tau2") if not np.isfinite(values[n])]
+    if unknown:
+        raise refuse(
+            "not_identifiable",
+            where=f"model '{name}', stall",
+            expected="a value for every parameter of the stall",
+            found=f"none for {', '.join(unknown)}",
+            do="Fly dynamic stalls beside quasi-steady ones, or state it: fixed.",
+        )
+    return Stall(
+        a1=values["a1"],
+        alpha_star=values["alpha_star"],
+        tau1=values["tau1"],
+        tau2=values["tau2"],
+        CL_alpha=values["CL_alpha"],
+        alpha_0=-values["CL_0"] / values["CL_alpha"],
+        CD_X=values.get("CD_X", 0.0),
+        Cm_X=values.get("Cm_X", 0.0),
     )
 
 

@@ -113,7 +113,8 @@ class Identification:
     A parameter that is not identifiable has NaN for value and errors, and NaN in `covariance`.
     labels: what a coefficient includes beyond aerodynamics ('including thrust'). fits: by
     coefficient, or by output where outputs are compared; formulas: by coefficient, where fits are
-    not. uncertainty: what the parameters' `se` is, in words.
+    not. fixed: values of the formulas' terms that were not estimated. tied: terms that are a factor
+    times another. uncertainty: what the parameters' `se` is, in words.
     """
 
     method: str
@@ -127,6 +128,8 @@ class Identification:
     labels: Mapping[str, str] = field(default_factory=dict)
     formulas: Mapping[str, str] = field(default_factory=dict)
     uncertainty: str = "coloured residuals"
+    fixed: Mapping[str, float] = field(default_factory=dict)
+    tied: Mapping[str, tuple[str, float]] = field(default_factory=dict)
 
     def __getitem__(self, name: str) -> Parameter:
         """The parameter `name`; raises KeyError."""

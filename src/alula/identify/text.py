@@ -5,6 +5,7 @@ from __future__ import annotations
 from textwrap import wrap
 
 from alula.identify.result import Identification, Parameter
+from alula.identify.typical import flown_sum
 
 _WIDTH = 104
 
@@ -26,6 +27,10 @@ def summary(result: Identification) -> str:
     lines += ["-" * _WIDTH, _header(result), "-" * _WIDTH]
     wide, units = _name_width(result), _unit_width(result)
     lines += [_row(p, wide, units) for p in result.parameters]
+    given = [f"{n} = {v:.5g}" for n, v in result.fixed.items()]
+    given += [f"{n} = {k:.5g} {other}" for n, (other, k) in result.tied.items()]
+    if given:
+        lines += wrap("not estimated: " + ", ".join(given), _WIDTH, subsequent_indent="    ")
     lines += ["=" * _WIDTH, result.status]
     for name, fit in result.fits.items():
         if fit.diagnostics:
@@ -40,6 +45,10 @@ def summary(result: Identification) -> str:
         f"se: {result.uncertainty}; se white: as if residuals were white;\nthe interval takes "
         "Student's t with the degrees of freedom of coloured residuals."
     )
+    sums = {p.name: flown for p in result.parameters if (flown := flown_sum(p.name))}
+    if sums:
+        words = ", ".join(f"{name} is {flown}" for name, flown in sums.items())
+        lines += wrap(f"flight tells of the rates' derivatives: {words}.", _WIDTH)
     if any(p.bias is not None for p in result.parameters):
         lines.append("biased estimates: the interval includes the estimated bias, se does not.")
     return "\n".join(lines)

@@ -32,6 +32,21 @@ def constant_name(coefficient: str) -> str:
     return f"{coefficient}_0"
 
 
+def flown_sum(name: str) -> str | None:
+    """What flight yields under the name of a rate's derivative; None for other parameters.
+
+    In flight alphadot goes along with q, and betadot against r, so that a model without a term in
+    them holds the sums: 'Cm_q' is Cm_q + Cm_alphadot, 'Cn_r' is Cn_r - Cn_betadot (Etkin and Reid,
+    Dynamics of Flight, 1996, ch. 5).
+    """
+    coefficient, _, rest = name.split("[")[0].partition("_")
+    if rest == "q" and coefficient in ("CX", "CZ", "CD", "CL", "Cm"):
+        return f"{coefficient}_q + {coefficient}_alphadot"
+    if rest == "r" and coefficient in ("CY", "Cl", "Cn"):
+        return f"{coefficient}_r - {coefficient}_betadot"
+    return None
+
+
 def typical_magnitude(coefficient: str, name: str) -> float | None:
     """Order of magnitude of the parameter `name`; None for constants and products."""
     return TYPICAL.get(coefficient, {}).get(name.removeprefix(f"{coefficient}_"))

@@ -152,15 +152,19 @@ def rotations(q: Array) -> Array:
 
 
 def euler_angles(q: Array) -> Array:
-    """phi theta psi (n, 3), rad, of quaternions (n, 4); at 90 degrees of pitch still numbers."""
-    R = rotations(q)
-    return np.column_stack(
-        [
-            np.arctan2(R[:, 1, 2], R[:, 2, 2]),
-            np.arctan2(-R[:, 0, 2], np.hypot(R[:, 0, 0], R[:, 0, 1])),
-            np.arctan2(R[:, 0, 1], R[:, 0, 0]),
-        ]
-    )
+    """phi theta psi (n, 3), rad, of quaternions (n, 4).
+
+    By sum and difference of bank and heading, each of which is lost only where it does not matter:
+    at 90 deg of pitch, where bank and heading are one angle, they still make up the attitude.
+    """
+    w, x, y, z = np.moveaxis(q, -1, 0)
+    difference = 2.0 * np.arctan2(x - z, w + y)  # phi - psi, by half angles
+    total = 2.0 * np.arctan2(x + z, w - y)
+    theta = 2.0 * np.arctan2(np.hypot(w + y, x - z), np.hypot(w - y, x + z)) - 0.5 * np.pi
+    phi, psi = 0.5 * (total + difference), 0.5 * (total - difference)
+    turn = 2.0 * np.pi
+    phi, psi = (angle - turn * np.round(angle / turn) for angle in (phi, psi))
+    return np.column_stack([phi, theta, psi])
 
 
 def quaternion(phi: float, theta: float, psi: float) -> Array:

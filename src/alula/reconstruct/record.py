@@ -113,18 +113,32 @@ def _samples(flight: Flight, sensor: Sensor, maneuver: Maneuver) -> tuple[Array,
     values = channel.values[use]
     if sensor.channel.startswith(("lat", "lon")) and len(values):
         e2 = 2.0 * _EARTH_F - _EARTH_F**2
-        latitude = flight[sensor.channel.replace("lon", "lat")]
-        at = np.interp(channel.t[use][0], latitude.t, latitude.values)
-        h = (
-            float(np.interp(channel.t[use][0], flight["h"].t, flight["h"].values))
-            if ("h" in flight)
-            else 0.0
-        )
+        at = _valid_at(flight, sensor.channel.replace("lon", "lat"), channel.t[use][0])
+        if at is None:
+            raise refuse(
+                "missing_channel",
+                where=f"maneuver {maneuver.id}, channel {sensor.channel}",
+                expected="a latitude, which the length of a degree of longitude follows from",
+                found="no valid sample of one",
+                do="Map lat, or switch the longitude off with use = false.",
+            )
+        heights = (_valid_at(flight, name, channel.t[use][0]) for name in ("h", "h_gps"))
+        h = next((x for x in heights if x is not None), 0.0)
         w = np.sqrt(1.0 - e2 * np.sin(at) ** 2)
         meridian, prime = _EARTH_A * (1.0 - e2) / w**3, _EARTH_A / w
         radius = meridian + h if sensor.kind == "north" else (prime + h) * np.cos(at)
-        values = (values - values[0]) * radius
+        turn = values - values[0]  # beyond the date line a longitude is a whole turn away
+        values = (turn - 2.0 * np.pi * np.round(turn / (2.0 * np.pi))) * radius
     return channel.t[use], values
+
+
+def _valid_at(flight: Flight, name: str, t: float) -> float | None:
+    """The channel at t by its valid samples; None where there are none."""
+    if name not in flight:
+        return None
+    channel = flight[name]
+    valid = np.isfinite(channel.values)
+    return float(np.interp(t, channel.t[valid], channel.values[valid])) if valid.any() else None
 
 
 def _union(t: Array, others: Sequence[Array], tolerance: float) -> Array:

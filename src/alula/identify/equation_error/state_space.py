@@ -17,7 +17,7 @@ import numpy as np
 
 from alula.base.arrays import Array, frozen
 from alula.base.local_cubic import LocalCubic
-from alula.base.messages import Message, refuse
+from alula.base.messages import Message, note, refuse
 from alula.flight import Motion
 from alula.identify.regression.regress import Block, Weighting, regress
 from alula.identify.result import Parameter
@@ -52,6 +52,19 @@ class StateSpace:
     r2: Mapping[str, float]
     messages: tuple[Message, ...]
 
+    def summary(self) -> str:
+        """A and B row by row with standard errors, as plain text."""
+        lines = [f"{self.axis} state equations, SI and rad", "=" * 72]
+        columns = [*(f"A_{{}}_{x}" for x in self.states), *(f"B_{{}}_{u}" for u in self.inputs)]
+        by_name = {p.name: p for p in self.parameters}
+        for state in self.states:
+            lines.append(f"d{state}/dt{'':<8}R2 {self.r2[state]:.4f}")
+            for p in (by_name[c.format(state)] for c in columns):
+                words = p.verdict.replace("_", " ")
+                lines.append(f"  {p.name:<18}{p.value:>12.5g} ± {p.se:<10.2g}{p.unit:<10}{words}")
+        lines += ["=" * 72, "se: coloured residuals; the reconstruction's uncertainty is not in it"]
+        return "\n".join(lines)
+
 
 def state_derivatives(motion: Motion, gravity: float = 9.80665) -> dict[str, Array]:
     """Derivatives (n,) of V alpha beta p q r phi theta, in still air or steady wind."""
@@ -85,15 +98,18 @@ def identify_state_space(
 ) -> StateSpace:
     """A and B of the longitudinal (V alpha theta q) or lateral (beta p r phi) motion.
 
-    motions: one per maneuver. inputs: names of controls; None takes those of the axis that every
-    motion has. Raises BadInput where there is no such control or no motion, or too few samples.
+    motions: one per maneuver; those held out are left aside. inputs: names of controls; None takes
+    those of the axis that every motion has. Raises BadInput where there is no such control or no
+    motion, or too few samples.
     """
+    aside = [m.maneuver.id for m in motions if m.maneuver.held_out]
+    motions = [m for m in motions if not m.maneuver.held_out]
     if not motions:
         raise refuse(
             "no_maneuver",
             where=f"{axis} state equations",
-            expected="at least one maneuver",
-            found="none",
+            expected="at least one maneuver that is not held out",
+            found=", ".join(aside) or "none",
             do=f"Name a maneuver with aspect = '{axis}'.",
         )
     wanted = INPUTS[axis] if inputs is None else tuple(inputs)
@@ -112,6 +128,16 @@ def identify_state_space(
     constants = [f"[{m.maneuver.id}]" for m in motions]
     parameters: list[Parameter] = []
     messages: list[Message] = []
+    if aside:
+        messages.append(
+            note(
+                "held_out",
+                where=", ".join(aside),
+                expected="maneuvers to learn from",
+                found="maneuvers that are held out: they were left aside",
+                do="Nothing; judge the matrices on them.",
+            )
+        )
     r2: dict[str, float] = {}
     for state in states:
         blocks = [

@@ -102,6 +102,17 @@ def identify_output_error(
         stabilize=stabilize or {},
         substeps=substeps,
     )
+    terms = [t.name(c) for c, formula in models.items() for t in parse(formula)]
+    # a project's first values of noises are for filter error
+    strange = [n for n in start or () if n not in terms and not n.startswith(("F_", "sigma_"))]
+    if strange:
+        raise refuse(
+            "unknown_parameter",
+            where="output error, start",
+            expected="terms of the model: " + ", ".join(terms),
+            found=", ".join(strange),
+            do="Correct the names.",
+        )
     values = {**start_values(learn, models, {**(fixed or {}), **(start or {})})}
     model = formula_model(models, values, learn[0].reference)
     fit = fit_output_error(
@@ -147,6 +158,8 @@ def identify_output_error(
         result,
         parameters=parameters,
         formulas=dict(models),
+        fixed={n: v for n, v in (fixed or {}).items() if n in terms},
+        tied=dict(tied or {}),
         messages=(*result.messages, *turned),
         status=result.status + "".join(f"; sign contradicted: {m.where}" for m in turned),
     )

@@ -21,14 +21,17 @@ from alula.base.messages import refuse, warn
 from alula.identify.coefficients import CoefficientData
 from alula.identify.likelihood.optimizer import Minimum, Point, minimize
 from alula.identify.likelihood.parameters import Fitted, Whitened, assembled
-from alula.identify.result import Identification
+from alula.identify.result import Identification, Parameter
+from alula.identify.typical import unit
 from alula.model import parse
 
 NAMES = ("a1", "alpha_star", "tau1", "tau2")
+UNITS = ("1/rad", "rad", "s", "s")
 LOW = (1.0, 0.0, 1e-3, 0.0)  # 1/rad, rad, s, s
 HIGH = (200.0, 1.5, 5.0, 5.0)
 FIRST = (20.0, 0.0, 0.2, 0.1)
 STARTS = 12  # stall angles tried, of which the best two are searched from
+EVEN = 0.1  # of the interval, by which steps may differ
 TOLD = 0.5  # standard error over value, from which on the flight does not tell a stall parameter
 ALONE = ("CL", "CD", "Cm")
 
@@ -53,9 +56,16 @@ def separation(
 class _Stall:
     """The likelihood: residuals of all coefficients over all maneuvers, variances estimated."""
 
-    def __init__(self, data: Sequence[CoefficientData], models: Mapping[str, str]) -> None:
+    def __init__(
+        self,
+        data: Sequence[CoefficientData],
+        models: Mapping[str, str],
+        fixed: Mapping[str, float],
+    ) -> None:
         self.data, self.models = data, models
-        self.names = list(NAMES)
+        self.free = [i for i, n in enumerate(NAMES) if n not in fixed]
+        self.known = np.array([fixed.get(n, np.nan) for n in NAMES])
+        self.names = [NAMES[i] for i in self.free]
         self.columns: dict[str, list[int]] = {}
         for c, formula in models.items():
             own = [t.name(c) for t in parse(formula)] + ([] if c == "CL" else [f"{c}_X"])
@@ -74,6 +84,12 @@ class _Stall:
         lift = [t.name("CL") for t in parse(models["CL"])]
         self.attached = np.array([n in ("CL_0", "CL_alpha") for n in lift])
 
+    def stall(self, theta: Array) -> Array:
+        """All four stall parameters."""
+        out = self.known.copy()
+        out[self.free] = theta[: len(self.free)]
+        return out
+
     def basis(self, stall: Array, i: int) -> dict[str, Array]:
         """Columns (n, k) of each coefficient's own parameters, in which the model is linear."""
         d = self.data[i]
@@ -89,8 +105,9 @@ class _Stall:
 
     def linear(self, stall: Array) -> Array:
         """All parameters (k,) with the coefficients' own ones by least squares."""
-        theta = np.concatenate([stall, np.zeros(len(self.names) - len(NAMES))])
-        bases = [self.basis(stall, i) for i in range(len(self.data))]
+        free = stall[self.free]
+        theta = np.concatenate([free, np.zeros(len(self.names) - len(free))])
+        bases = [self.basis(self.stall(theta), i) for i in range(len(self.data))]
         for c, columns in self.columns.items():
             matrix = np.vstack([b[c] for b in bases])
             y = np.concatenate([d.coefficients[c] for d in self.data])
@@ -99,7 +116,7 @@ class _Stall:
 
     def model(self, theta: Array, i: int) -> dict[str, Array]:
         """Coefficients (n,) of one maneuver."""
-        return {c: b @ theta[self.columns[c]] for c, b in self.basis(theta[:4], i).items()}
+        return {c: b @ theta[self.columns[c]] for c, b in self.basis(self.stall(theta), i).items()}
 
     def errors(self, theta: Array) -> dict[str, list[Array]]:
         """Measured minus model, by coefficient and maneuver."""
@@ -111,11 +128,11 @@ class _Stall:
 
     def slopes(self, theta: Array, i: int) -> dict[str, Array]:
         """Sensitivities (n, k) of each coefficient of one maneuver."""
-        basis = self.basis(theta[:4], i)
+        basis = self.basis(self.stall(theta), i)
         out = {c: np.zeros((len(self.data[i].t), len(theta))) for c in self.models}
         for c, columns in self.columns.items():
             out[c][:, columns] = basis[c]
-        for j in range(4):
+        for j in range(len(self.free)):
             h = 1e-5 * max(abs(theta[j]), 0.01)
             up, down = theta.copy(), theta.copy()
             up[j], down[j] = theta[j] + h, theta[j] - h
@@ -152,15 +169,19 @@ def identify_stall(
     data: Sequence[CoefficientData],
     models: Mapping[str, str],
     *,
+    fixed: Mapping[str, float] | None = None,
     truth: Mapping[str, float] | None = None,
 ) -> Identification:
     """a1 (1/rad), alpha_star (rad), tau1 and tau2 (s) with the derivatives of the attached flow.
 
     data: maneuvers through the stall, sampled evenly, alpha against the air without noise to speak
-    of (reconstructed). models: formulas of the attached flow, CL with 1 and alpha, and any of CD,
-    Cm. A stall parameter whose standard error is over half of its value reads not_identifiable.
-    Raises BadInput where CL has no such formula or a maneuver lacks what is asked for.
+    of (reconstructed); those held out are predicted, not learned from. models: formulas of the
+    attached flow, CL with 1 and alpha, and any of CD, Cm. fixed: values of stall parameters that
+    are known. A stall parameter whose standard error is over half of its value reads
+    not_identifiable. Raises BadInput where CL has no such formula, a maneuver lacks what is asked
+    for or is unevenly sampled, and for values of `fixed` that are not possible.
     """
+    known = dict(fixed or {})
     lift = [t.name("CL") for t in parse(models["CL"])] if "CL" in models else []
     lacking = [c for d in data for c in models if c not in d.coefficients]
     if not {"CL_0", "CL_alpha"} <= set(lift) or set(models) - set(ALONE) or lacking or not data:
@@ -172,12 +193,21 @@ def identify_stall(
             f"{', '.join(dict.fromkeys(lacking)) or 'nothing'}",
             do="State CL of the attached flow, and give maneuvers through the stall.",
         )
-    problem = _Stall(data, models)
+    _check(data, known)
+    learn = [d for d in data if not d.maneuver.held_out]
+    problem = _Stall(learn, models, known)
     found = _searched(problem)
     fitted, blocks = [], []
     if found.converged:
         r = problem.variance(found.value)
-        for i, d in enumerate(data):
+        held = [d for d in data if d.maneuver.held_out]
+        unseen = _Stall(held, models, known)
+        for i, d in enumerate(held):
+            fitted += [
+                Fitted(c, d.maneuver.id, d.t, d.coefficients[c], y, True)
+                for c, y in unseen.model(found.value, i).items()
+            ]
+        for i, d in enumerate(learn):
             model, slopes = problem.model(found.value, i), problem.slopes(found.value, i)
             for c in models:
                 measured = d.coefficients[c]
@@ -191,18 +221,64 @@ def identify_stall(
         "stall", problem.names, {**dict.fromkeys(NAMES, "stall"), **belongs}, blocks, found,
         fitted, dict(models), truth=truth,
     )  # fmt: skip
-    return _told(result)
+    told = _told(result)
+    own = dict(zip(NAMES, UNITS, strict=True))
+    named = (replace(p, unit=own.get(p.name) or _unit(p)) for p in told.parameters)
+    return replace(told, parameters=tuple(named), fixed=known)
+
+
+def _unit(p: Parameter) -> str:
+    return "1" if p.name.endswith("_X") else unit(p.coefficient, p.name)
+
+
+def _check(data: Sequence[CoefficientData], fixed: Mapping[str, float]) -> None:
+    """Refuse what the search cannot take."""
+    wrong = [
+        f"{n} = {v:g}" for n, v in fixed.items()
+        if n not in NAMES or not LOW[NAMES.index(n)] <= v <= HIGH[NAMES.index(n)]
+    ]  # fmt: skip
+    if wrong:
+        limits = zip(NAMES, LOW, HIGH, strict=True)
+        raise refuse(
+            "bad_option",
+            where="stall, fixed",
+            expected=", ".join(f"{n} from {low:g} to {high:g}" for n, low, high in limits),
+            found=", ".join(wrong),
+            do="Correct it: 1/rad, rad, s, s.",
+        )
+    if all(d.maneuver.held_out for d in data):
+        raise refuse(
+            "no_maneuver",
+            where="stall",
+            expected="a maneuver that is not held out",
+            found=", ".join(d.maneuver.id for d in data),
+            do="Take `held_out` away from one.",
+        )
+    for d in data:
+        steps = np.diff(d.t)
+        if len(steps) < 20 or np.ptp(steps) > EVEN * float(np.mean(steps)):
+            raise refuse(
+                "uneven_time",
+                where=f"stall, maneuver {d.maneuver.id}",
+                expected="20 samples or more, evenly spaced",
+                found=f"{len(d.t)}, steps of {steps.min(initial=np.inf):.4g} to "
+                f"{steps.max(initial=0.0):.4g} s",
+                do="Choose a window without gaps.",
+            )
 
 
 def _searched(problem: _Stall) -> Minimum:
     """The best of searches from several stall angles: the cost has a valley for each."""
     lowest = min(float(a.min()) for a in problem.alpha)
     top = max(float(a.max()) for a in problem.alpha)
-    low = np.concatenate([LOW, np.full(len(problem.names) - 4, -np.inf)])
-    high = np.concatenate([HIGH, np.full(len(problem.names) - 4, np.inf)])
+    others = len(problem.names) - len(problem.free)
+    low = np.concatenate([np.array(LOW)[problem.free], np.full(others, -np.inf)])
+    high = np.concatenate([np.array(HIGH)[problem.free], np.full(others, np.inf)])
     best: Minimum | None = None
     starts = [
-        problem.linear(np.array([FIRST[0], star, FIRST[2], FIRST[3]]))
+        problem.linear(
+            np.where(np.isnan(problem.known), [FIRST[0], star, *FIRST[2:]], problem.known)
+        )
         for star in lowest + np.linspace(0.1, 1.0, STARTS) * (top - lowest)
     ]
     costs = [point.cost if (point := problem(s, False)) else np.inf for s in starts]
@@ -228,7 +304,7 @@ def _told(result: Identification) -> Identification:
                     where=f"stall, {p.name}",
                     expected="stalls that move with it, quick ones for time constants",
                     found=f"{p.value:.3g} with a standard error of {p.se:.3g}",
-                    do="Fly dynamic stalls beside quasi-steady ones, or fix the parameter.",
+                    do="Fly dynamic stalls beside quasi-steady ones, or state it: fixed.",
                 )
             )
             covariance[i, :] = covariance[:, i] = nan

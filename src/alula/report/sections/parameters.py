@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 
 from alula.identify.result import Identification, Parameter
+from alula.identify.typical import flown_sum
 from alula.report.html import Html, join, table, tag
 from alula.report.names import WORDS
 from alula.report.numbers import MISSING, interval, number, percent, plus_minus
@@ -40,6 +41,8 @@ def parameters(result: Identification) -> Html:
                 " the interval includes zero or the error is over half the value; ",
                 mark("bad", "not identifiable"),
                 " these data do not determine it, whatever value a fit may give.",
+                _sums(result),
+                _given(result),
             ),
             *(
                 _table(name, [p for p in result.parameters if p.coefficient == name])
@@ -47,6 +50,22 @@ def parameters(result: Identification) -> Html:
             ),
         ]
     )
+
+
+def _sums(result: Identification) -> str:
+    """What the rates' derivatives stand for, as flight cannot take the parts apart."""
+    sums = {p.name: flown for p in result.parameters if (flown := flown_sum(p.name))}
+    if not sums:
+        return ""
+    words = ", ".join(f"{name} is {flown.replace('-', '−')}" for name, flown in sums.items())
+    return f" Of the rates' derivatives flight tells sums: {words}."
+
+
+def _given(result: Identification) -> str:
+    """The terms that were not estimated."""
+    held = [f"{name} = {number(value)}" for name, value in result.fixed.items()]
+    held += [f"{n} = {number(k, 3)} {of}" for n, (of, k) in result.tied.items()]
+    return f" Not estimated: {', '.join(held)}." if held else ""
 
 
 def _table(coefficient: str, members: list[Parameter]) -> Html:
