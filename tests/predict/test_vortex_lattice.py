@@ -19,7 +19,6 @@ from lattice_shapes import (
     surface,
     unit,
 )
-from tests.data import data
 
 from alula.aircraft.geometry import Airfoil, ControlSurface, Geometry
 from alula.base.arrays import Array
@@ -28,6 +27,7 @@ from alula.model import Reference
 from alula.predict.lattice_axes import LatticeAxes, coefficient_names
 from alula.predict.mesh_study import mesh_study
 from alula.predict.vortex_lattice import vortex_lattice
+from data import data
 
 CASES = ["rectangle AR 8", "Bertin and Smith swept wing", "light airplane of SportStar size"]
 
