@@ -8,7 +8,8 @@ from identify_flights import DT, N, maneuver
 
 from alula.base.local_cubic import LocalCubic
 from alula.identify import identify_equation_error
-from alula.identify.trust.verdict import verdict
+from alula.identify.result import Parameter
+from alula.identify.trust.verdict import verdict, weak_words
 
 
 def identify(formula, *data, **options):
@@ -160,6 +161,18 @@ def test_variance_inflation_is_one_over_one_minus_r2():
 )
 def test_verdict_rule(value, se, ci, scale, expected):
     assert verdict(value, se, ci, scale) == expected
+
+
+def test_weak_constants_that_are_zero_are_told_apart():
+    def parameter(name, ci95, verdict):
+        return Parameter(name, name[:2], sum(ci95) / 2, 0.1, 0.1, ci95, verdict, (), "1", 1.0)
+
+    zero, off = parameter("CY_0[a]", (-0.2, 0.3), "weak"), parameter("Cl_0", (0.1, 0.9), "weak")
+    rate, good = parameter("Cn_p", (-0.2, 0.3), "weak"), parameter("Cm_0", (-0.1, 0.1), "ok")
+    assert [p.zero_constant for p in (zero, off, rate, good)] == [True, False, False, False]
+    words = weak_words([zero, off, rate, good])
+    assert words == "weak: Cl_0, Cn_p; zero within their error: CY_0[a]"
+    assert weak_words([good]) == ""
 
 
 def test_noisy_regressor_is_said():

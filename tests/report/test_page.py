@@ -170,6 +170,13 @@ def test_verdict_follows_the_worst_finding() -> None:
     good[2] = replace(good[2], verdict="weak")
     weak = replace(report, identification=replace(report.identification, parameters=tuple(good)))
     assert verdict(render(weak)) == "caution"
+    # A symmetric airplane has trim constants that are zero: no fault of the data.
+    named = next(p for p in good if p.name.endswith("_0"))
+    zero = replace(named, verdict="weak", value=0.0, ci95=(-1e-4, 1e-4))
+    trim = [zero if p is named else replace(p, verdict="ok") for p in good]
+    flown = replace(report, identification=replace(report.identification, parameters=tuple(trim)))
+    assert verdict(render(flown)) == "good"
+    assert "zero within their error: 1 trim constant" in render(flown)
     failed = replace(fine, reconstruction=replace(report.reconstruction, converged=False))
     assert verdict(render(failed)) == "bad"
     error = refuse("x", where="x", expected="x", found="x", do="x").messages

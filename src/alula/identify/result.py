@@ -52,6 +52,12 @@ class Parameter:
     truth: float | None = None
     bias: float | None = None
 
+    @property
+    def zero_constant(self) -> bool:
+        """Weak because it is a trim constant that is zero as closely as the data tell."""
+        constant = self.name.split("[")[0] == f"{self.coefficient}_0"
+        return constant and self.verdict == "weak" and self.ci95[0] <= 0.0 <= self.ci95[1]
+
 
 @dataclass(frozen=True)
 class Fit:

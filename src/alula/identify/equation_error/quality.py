@@ -11,6 +11,7 @@ from alula.identify.coefficients import CoefficientData
 from alula.identify.equation_error.task import CoefficientTask, variables_of
 from alula.identify.regression.regress import Regression
 from alula.identify.result import Fit, Parameter, Series
+from alula.identify.trust.verdict import weak_words
 
 
 def predictions(
@@ -97,18 +98,18 @@ def joint_covariance(
 def status(parameters: Sequence[Parameter]) -> str:
     """The result in words, and what to try next."""
     lost = [p.name for p in parameters if p.verdict == "not_identifiable"]
-    weak = [p.name for p in parameters if p.verdict == "weak"]
     if lost:
         return (
             f"not identifiable: {', '.join(lost)}. Fly a maneuver that excites them on their own, "
             "or take a term out of the formula"
         )
-    if weak:
+    if any(p.verdict == "weak" and not p.zero_constant for p in parameters):
         return (
-            f"identified; weak: {', '.join(weak)}. Their error bars are over half the value: "
-            "more or longer maneuvers would narrow them"
+            f"identified; {weak_words(parameters)}. Error bars over half the value: more or longer "
+            "maneuvers would narrow them"
         )
-    return "identified: every parameter is resolved"
+    words = ("identified: every parameter is resolved", weak_words(parameters))
+    return "; ".join(w for w in words if w)
 
 
 def se_words(residuals: str, data: Sequence[CoefficientData]) -> str:

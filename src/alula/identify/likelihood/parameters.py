@@ -26,7 +26,7 @@ from alula.identify.regression.least_squares import least_squares
 from alula.identify.regression.regress import Block, Regression
 from alula.identify.regression.sandwich import sandwich
 from alula.identify.result import Fit, Identification, Parameter, Series
-from alula.identify.trust.verdict import assess
+from alula.identify.trust.verdict import assess, weak_words
 
 
 @dataclass(frozen=True)
@@ -287,9 +287,6 @@ def _r_squared(shown: Sequence[Series]) -> float:
 
 def _status(parameters: Sequence[Parameter], found: Minimum) -> str:
     lost = [p.name for p in parameters if p.verdict == "not_identifiable"]
-    weak = [p.name for p in parameters if p.verdict == "weak"]
     if lost:
         return f"{found.why}; not identifiable: {', '.join(lost)}"
-    if weak:
-        return f"{found.why}; weak: {', '.join(weak)}"
-    return f"{found.why}; every parameter is resolved"
+    return f"{found.why}; {weak_words(parameters) or 'every parameter is resolved'}"

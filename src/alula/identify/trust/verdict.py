@@ -11,7 +11,7 @@ interval is wider than 2 se on short maneuvers, and is the one that covers.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 from scipy import special
@@ -89,6 +89,15 @@ def assess(
     if not lost:  # of parameters that are not told, neither is the bias
         messages += warn_of_bias(coefficient, fit, se)
     return tuple(parameters), tuple(messages)
+
+
+def weak_words(parameters: Iterable[Parameter]) -> str:
+    """Which parameters are weak, '' where none: 'weak: CY_p; zero within their error: CY_0'."""
+    weak = [p for p in parameters if p.verdict == "weak"]
+    zero = ", ".join(p.name for p in weak if p.zero_constant)
+    rest = ", ".join(p.name for p in weak if not p.zero_constant)
+    said = (f"weak: {rest}" if rest else "", f"zero within their error: {zero}" if zero else "")
+    return "; ".join(words for words in said if words)
 
 
 def combination(name: str, why: Unresolved) -> str:

@@ -49,15 +49,18 @@ def verdict(report: ReportInput) -> tuple[str, str]:
         return verdict_of(report.validation)
     if identification is None or not identification.parameters:
         return _without_model(report)
-    count = {"ok": 0, "weak": 0, "not_identifiable": 0}
-    for p in identification.parameters:
-        count[p.verdict] += 1
-    total = len(identification.parameters)
-    if count["not_identifiable"]:
-        return "bad", f"{count['not_identifiable']} of {total} parameters are not identifiable"
-    if count["weak"]:
-        return "caution", f"{count['weak']} of {total} parameters are weakly determined"
-    return "good", f"All {total} parameters are resolved by these data"
+    parameters = identification.parameters
+    total, lost = len(parameters), sum(p.verdict == "not_identifiable" for p in parameters)
+    zero = sum(p.zero_constant for p in parameters)
+    weak = sum(p.verdict == "weak" for p in parameters) - zero
+    if lost:
+        return "bad", f"{lost} of {total} parameters are not identifiable"
+    if weak:
+        return "caution", f"{weak} of {total} parameters are weakly determined"
+    words = f"All {total} parameters are resolved by these data"
+    return "good", words + (
+        f"; zero within their error: {_many(zero, 'trim constant')}" if zero else ""
+    )
 
 
 def _without_model(report: ReportInput) -> tuple[str, str]:
@@ -108,11 +111,22 @@ def reasons(report: ReportInput) -> list[Html]:
 def _parameters(result: Identification) -> list[Html]:
     """The parameters that are not resolved, by name."""
     found = []
-    for verdict_, start in (
-        ("not_identifiable", "Not identifiable, the data do not determine them: "),
-        ("weak", "Weak, the interval includes zero or the error is over half the value: "),
+    weak = [p for p in result.parameters if p.verdict == "weak"]
+    for those, start in (
+        (
+            [p for p in result.parameters if p.verdict == "not_identifiable"],
+            "Not identifiable, the data do not determine them: ",
+        ),
+        (
+            [p for p in weak if not p.zero_constant],
+            "Weak, the interval includes zero or the error is over half the value: ",
+        ),
+        (
+            [p for p in weak if p.zero_constant],
+            "Trim constants that are zero within their error: ",
+        ),
     ):
-        names = [tag("code", p.name) for p in result.parameters if p.verdict == verdict_]
+        names = [tag("code", p.name) for p in those]
         if names:
             found.append(_listed(start, names))
     return found
