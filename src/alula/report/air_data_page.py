@@ -14,7 +14,7 @@ from alula.report.angles_section import angles_section
 from alula.report.html import Html, join, table, tag
 from alula.report.numbers import MISSING, interval, number, plus_minus
 from alula.report.pictures import interval_picture, mark
-from alula.report.plain_page import plain_page
+from alula.report.plain_page import END, SKIP, plain_page
 
 MEANING = {
     "k_V": "airspeed scale", "k_alpha": "upwash at the alpha vane", "b_alpha": "alpha vane, bias",
@@ -43,7 +43,7 @@ def air_data_page(
     angles, refused = angles or {}, refused or {}
     body = tag(
         "body",
-        tag("a", "Skip to the report", href="#report", class_="skip"),
+        SKIP,
         tag(
             "main",
             tag("p", "Alula · air data", class_="kicker"),
@@ -58,7 +58,7 @@ def air_data_page(
                 )
                 for id in dict.fromkeys([*found, *angles])
             ),
-            tag("footer", tag("p", "End of report. Made by Alula; opens offline.")),
+            END,
             id="report",
         ),
     )

@@ -9,7 +9,7 @@ from alula.report.calibration_pictures import STYLE, allan_picture, clouds, leng
 from alula.report.html import Html, file_name, join, table, tag
 from alula.report.numbers import number, percent, plus_minus
 from alula.report.pictures import mark
-from alula.report.plain_page import plain_page
+from alula.report.plain_page import END, plain_page
 
 FEW = 60  # vectors up to which each has bars of its own
 LEVELS = {"ok": "good", "weak": "caution", "not_identifiable": "bad"}
@@ -34,7 +34,7 @@ def calibration_page(found: Calibrated) -> str:
             *parts,
             _chapter("messages", "Messages", tag("ul", *said) if said else tag("p", "None.")),
             _chapter("files", "Files", _files(found)),
-            tag("footer", tag("p", "End of report. Made by Alula; opens offline.")),
+            END,
         ),
     )
     return plain_page(f"{found.project.name} · calibration", body, STYLE)

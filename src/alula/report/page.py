@@ -8,7 +8,7 @@ from alula.report.budget import left_out, store_for
 from alula.report.figures import FigureStore
 from alula.report.html import Html, css_string, join, tag
 from alula.report.input import ReportInput
-from alula.report.plain_page import packaged, page_head
+from alula.report.plain_page import END, SKIP, Chapter, contents, packaged, page_head, sections
 from alula.report.sections.coefficients import coefficients
 from alula.report.sections.correlation import correlation
 from alula.report.sections.histories import histories
@@ -32,21 +32,14 @@ def render(report: ReportInput) -> str:
     The same input gives the same text.
     """
     figures = store_for(report, lambda store: join(c for *_, c in _sections(report, store)))
-    sections = _sections(report, figures)
+    chapters = _sections(report, figures)
     style = packaged("page.css") + _running_head(report)
     scripts = [packaged(name) for name in _SCRIPTS]
     head = page_head(f"{report.name} · Alula report", style, scripts)
-    nav = tag(
-        "nav",
-        tag("p", "Contents", class_="kicker"),
-        tag("ol", *(tag("li", tag("a", title, href=f"#{key}")) for key, title, _ in sections)),
-        tag("button", "Dark page", id="theme", type="button", hidden=True),
-        aria_label="Contents",
-    )
     body = tag(
         "body",
-        tag("a", "Skip to the report", href="#report", class_="skip"),
-        nav,
+        SKIP,
+        contents(chapters, tag("button", "Dark page", id="theme", type="button", hidden=True)),
         tag(
             "main",
             header(report),
@@ -54,8 +47,8 @@ def render(report: ReportInput) -> str:
                 "noscript",
                 tag("p", "The plots need this page's own script; every table reads without it."),
             ),
-            *(tag("section", tag("h2", t), c, id=k, class_="chapter") for k, t, c in sections),
-            tag("footer", tag("p", "End of report. Made by Alula; opens offline.")),
+            *sections(chapters),
+            END,
             id="report",
         ),
         figures.block(),
@@ -64,9 +57,9 @@ def render(report: ReportInput) -> str:
     return "<!DOCTYPE html>\n" + tag("html", head, body, lang="en") + "\n"
 
 
-def _sections(report: ReportInput, figures: FigureStore) -> list[tuple[str, str, Html]]:
+def _sections(report: ReportInput, figures: FigureStore) -> list[Chapter]:
     """(anchor, title, content) of each section that has something to show."""
-    found: list[tuple[str, str, Html]] = []
+    found: list[Chapter] = []
 
     def still(key: str, title: str, make: Callable[[], Html]) -> None:
         found.append((key, title, figures.once(key, make)))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from importlib.resources import files
 
 from alula.report.html import Html, tag
@@ -14,6 +14,62 @@ def plain_page(title: str, body: Html, style: str = "") -> str:
     """The whole page as text. style: what it needs besides the reports' own style sheet."""
     head = page_head(title, packaged("page.css") + style)
     return "<!DOCTYPE html>\n" + tag("html", head, body, lang="en") + "\n"
+
+
+Chapter = tuple[str, str, Html]  # anchor, title, content
+
+
+def chapters_page(
+    title: str,
+    kicker: str,
+    name: str,
+    facts: Mapping[str, str],
+    chapters: Sequence[Chapter],
+    style: str = "",
+) -> str:
+    """A page of chapters with their contents: what it is of, the facts of it, then each."""
+    body = tag(
+        "body",
+        SKIP,
+        contents(chapters),
+        tag(
+            "main",
+            tag("p", f"Alula · {kicker}", class_="kicker"),
+            tag("h1", name),
+            tag(
+                "dl",
+                *(tag("div", tag("dt", k), tag("dd", v)) for k, v in facts.items()),
+                class_="facts",
+            ),
+            *sections(chapters),
+            END,
+            id="report",
+        ),
+    )
+    return plain_page(title, body, style)
+
+
+SKIP = tag("a", "Skip to the report", href="#report", class_="skip")
+END = tag("footer", tag("p", "End of report. Made by Alula; opens offline."))
+
+
+def contents(chapters: Sequence[Chapter], *more: Html) -> Html:
+    """Links to the chapters, then what else belongs there."""
+    return tag(
+        "nav",
+        tag("p", "Contents", class_="kicker"),
+        tag("ol", *(tag("li", tag("a", title, href=f"#{at}")) for at, title, _ in chapters)),
+        *more,
+        aria_label="Contents",
+    )
+
+
+def sections(chapters: Sequence[Chapter]) -> list[Html]:
+    """The chapters themselves."""
+    return [
+        tag("section", tag("h2", title), content, id=at, class_="chapter")
+        for at, title, content in chapters
+    ]
 
 
 def page_head(title: str, style: str, scripts: Sequence[str] = ()) -> Html:

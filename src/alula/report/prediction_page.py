@@ -10,7 +10,7 @@ from alula.predict.prediction import Prediction
 from alula.report.html import Html, join, table, tag
 from alula.report.numbers import MISSING, number, percent, plus_minus
 from alula.report.pictures import mark
-from alula.report.plain_page import plain_page
+from alula.report.plain_page import Chapter, chapters_page
 from alula.report.sections.geometry import geometry
 from alula.report.span_loads import STYLE, span_load
 
@@ -22,30 +22,17 @@ _STYLE = "td .source,td details.source{min-width:230px}"
 
 def prediction_page(found: Prediction) -> str:
     """The page as HTML; the same input gives the same text."""
-    sections = _sections(found)
-    body = tag(
-        "body",
-        tag("a", "Skip to the report", href="#report", class_="skip"),
-        tag(
-            "nav",
-            tag("p", "Contents", class_="kicker"),
-            tag("ol", *(tag("li", tag("a", t, href=f"#{k}")) for k, t, _ in sections)),
-            aria_label="Contents",
-        ),
-        tag(
-            "main",
-            tag("p", "Alula · derivatives predicted from the shape", class_="kicker"),
-            tag("h1", found.aircraft.name),
-            _facts(found),
-            *(tag("section", tag("h2", t), c, id=k, class_="chapter") for k, t, c in sections),
-            tag("footer", tag("p", "End of report. Made by Alula; opens offline.")),
-            id="report",
-        ),
+    return chapters_page(
+        f"{found.aircraft.name} · prediction",
+        "derivatives predicted from the shape",
+        found.aircraft.name,
+        _facts(found),
+        _sections(found),
+        STYLE + _STYLE,
     )
-    return plain_page(f"{found.aircraft.name} · prediction", body, STYLE + _STYLE)
 
 
-def _sections(found: Prediction) -> list[tuple[str, str, Html]]:
+def _sections(found: Prediction) -> list[Chapter]:
     out = [("derivatives", "Derivatives", _derivatives(found))]
     point = found.neutral_point
     words = None if point is None else (point, f"predicted, ± {number(found.neutral_se, 2)} m")
@@ -59,10 +46,10 @@ def _sections(found: Prediction) -> list[tuple[str, str, Html]]:
     return out
 
 
-def _facts(found: Prediction) -> Html:
+def _facts(found: Prediction) -> dict[str, str]:
     a, flow = found.aircraft, found.flow
     margin = found.margin
-    facts = {
+    return {
         "Method": found.derivatives.method,
         "True airspeed": f"{number(flow.V)} m/s",
         "Height": f"{number(found.h)} m",
@@ -73,8 +60,6 @@ def _facts(found: Prediction) -> Html:
         if margin is None
         else f"{percent(margin, 3)} of c",
     }
-    return tag("dl", *(tag("div", tag("dt", k), tag("dd", v)) for k, v in facts.items()),
-               class_="facts")  # fmt: skip
 
 
 def _derivatives(found: Prediction) -> Html:

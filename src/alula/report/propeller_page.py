@@ -16,7 +16,7 @@ from alula.predict.propeller_test import PropellerTest
 from alula.report.html import Html, join, table, tag
 from alula.report.numbers import MISSING, number, percent, plus_minus
 from alula.report.pictures import mark
-from alula.report.plain_page import plain_page
+from alula.report.plain_page import chapters_page
 from alula.report.propeller_picture import STYLE, key, propeller_picture
 
 _VERDICT = {"ok": "good", "weak": "caution", "not_identifiable": "bad"}
@@ -48,27 +48,14 @@ def propeller_page(
         "Speed of revolution": "–" if rpm is None else f"{number(rpm)} rpm",
         "From": blades.source,
     }
-    body = tag(
-        "body",
-        tag("a", "Skip to the report", href="#report", class_="skip"),
-        tag(
-            "nav",
-            tag("p", "Contents", class_="kicker"),
-            tag("ol", *(tag("li", tag("a", t, href=f"#{k}")) for k, t, _ in sections)),
-            aria_label="Contents",
-        ),
-        tag(
-            "main",
-            tag("p", "Alula · a propeller over its advance ratio", class_="kicker"),
-            tag("h1", blades.name),
-            tag("dl", *(tag("div", tag("dt", k), tag("dd", v)) for k, v in facts.items()),
-                class_="facts"),
-            *(tag("section", tag("h2", t), c, id=k, class_="chapter") for k, t, c in sections),
-            tag("footer", tag("p", "End of report. Made by Alula; opens offline.")),
-            id="report",
-        ),
-    )  # fmt: skip
-    return plain_page(f"{blades.name} · propeller", body, STYLE)
+    return chapters_page(
+        f"{blades.name} · propeller",
+        "a propeller over its advance ratio",
+        blades.name,
+        facts,
+        sections,
+        STYLE,
+    )
 
 
 def _curves(
