@@ -118,14 +118,14 @@ def filter_rows(rounds: int = ROUNDS) -> list[dict[str, Any]]:
 
 def output_error_rows(rounds: int = ROUNDS) -> list[dict[str, Any]]:
     """The baseline's longitudinal case against its numba program."""
-    from verification import output_error_speed
+    from verification.estimation import output_error_speed
 
     return [output_error_speed.bench_row(rounds)]
 
 
 def recursive_rows(rounds: int = ROUNDS) -> list[dict[str, Any]]:
     """Recursive least squares, seconds a sample; it has no peer."""
-    from verification import rls_speed
+    from verification.estimation import rls_speed
 
     best = rls_speed.measure(quick=rounds < ROUNDS)
     without = {"peer": None, "peer_s": None, "ratio": None, "allocations": None}
@@ -134,14 +134,14 @@ def recursive_rows(rounds: int = ROUNDS) -> list[dict[str, Any]]:
 
 def simulation_rows(rounds: int = ROUNDS) -> list[dict[str, Any]]:
     """The simulator against JSBSim."""
-    from verification import simulation_speed
+    from verification.simulator import simulation_speed
 
     return simulation_speed.bench_rows(rounds)
 
 
 def lattice_rows(rounds: int = ROUNDS) -> list[dict[str, Any]]:
     """The vortex lattice beside the factorization of its full matrix."""
-    from verification import lattice_speed
+    from verification.prediction import lattice_speed
 
     return [lattice_speed.bench_row(rounds)]
 

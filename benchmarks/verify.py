@@ -24,8 +24,9 @@ sys.path.insert(0, str(Path(__file__).parent))
 from verification.registry import ROWS, TOPICS, Row  # noqa: E402
 
 ROOT = Path(__file__).parents[1]
-for _topic in ("main_job", "simulator", "estimation", "prediction", "airdata", "later"):
-    importlib.import_module(f"verification.{_topic}")
+for _topic in ("main_job", "simulator", "estimation", "prediction", "airdata"):
+    importlib.import_module(f"verification.{_topic}.rows")
+importlib.import_module("verification.later")
 
 
 def run(row: Row, quick: bool) -> dict[str, Any]:

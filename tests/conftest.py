@@ -11,4 +11,4 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 HERE = Path(__file__).parent
 sys.path[:0] = [str(HERE), str(HERE.parent / "benchmarks")]
 
-import verification.flight_data  # noqa: E402, F401  sets ALULA_DATA, which examples/real asks for
+import verification.places  # noqa: E402, F401  sets ALULA_DATA, which examples/real asks for

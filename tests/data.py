@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from verification.flight_data import DATA as ROOT
+from verification.places import DATA as ROOT
 
 
 def data(*parts: str) -> Path:

@@ -12,7 +12,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-ROOT = Path(__file__).parents[2]
+from verification.places import ROOT
 
 
 def command(*arguments: str | Path) -> tuple[int, dict[str, Any]]:

@@ -16,8 +16,8 @@ from alula.base.messages import BadInput
 from alula.model import AeroModel, Reference, aero_model, load_model
 from alula.simulate import Condition, SimulatedFlight, airframe_of, fly, trim
 from alula.simulate.inputs import Steps
-from verification.asse_noise_free import asse_noise_free
-from verification.asse_noisy import asse_noisy
+from verification.airdata.asse_noise_free import asse_noise_free
+from verification.airdata.asse_noisy import asse_noisy
 
 AIRCRAFT = Path(__file__).parents[2] / "aircraft" / "sportstar.toml"
 DEG = np.pi / 180.0

@@ -13,7 +13,7 @@ from alula.airdata.inflight_motion import prepared
 from alula.airdata.inflight_record import AirDataRecord, record_of
 from alula.base.messages import BadInput
 from alula.flight import Channel, Flight
-from verification.inflight_calibration import flown, record, truth_of
+from verification.airdata.inflight_calibration import flown, record, truth_of
 
 
 @pytest.fixture(scope="module")

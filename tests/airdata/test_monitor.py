@@ -7,7 +7,7 @@ import pytest
 
 from alula.airdata.monitor import HEALTH, MonitorSettings, Source, monitor
 from alula.base.messages import BadInput
-from verification.airdata_monitor import KINDS, false_alarms, faulty
+from verification.airdata.monitor import KINDS, false_alarms, faulty
 
 DEG = np.pi / 180.0
 

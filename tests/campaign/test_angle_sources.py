@@ -20,7 +20,7 @@ from alula.flight import Flight
 from alula.logs.reader import read
 from alula.model import Reference, aero_model
 from data import data
-from verification import angle_sources as made
+from verification.airdata import angle_sources as made
 
 REAL = Path(__file__).parents[2] / "examples" / "real"
 DEG = np.pi / 180.0

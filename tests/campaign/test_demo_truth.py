@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from verification.demo_coverage import Estimate, coverage, identify_demo, run_seeds
+from verification.main_job.demo_coverage import Estimate, coverage, identify_demo, run_seeds
 
 SHARP = ("Cm_alpha", "Cm_q", "Cm_de", "Cl_p", "Cl_da", "Cn_beta", "Cn_dr")
 

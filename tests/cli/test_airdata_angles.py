@@ -9,7 +9,7 @@ import pytest
 
 from alula.model import save_model
 from cli.command import alula
-from verification import angle_sources as made
+from verification.airdata import angle_sources as made
 
 ROOT = Path(__file__).parents[2]
 UNITS = {"V": "m/s", "h": "m", "rho": "kg/m3", "thrust": "N", "ax": "m/s2", "ay": "m/s2",

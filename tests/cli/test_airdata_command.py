@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from cli.command import alula
-from verification.inflight_calibration import flown, record, truth_of
+from verification.airdata.inflight_calibration import flown, record, truth_of
 
 UNITS = {"V": "m/s", "h": "m", "h_gps": "m", "ax": "m/s2", "ay": "m/s2", "az": "m/s2",
          "v_north": "m/s", "v_east": "m/s", "v_down": "m/s", "p": "rad/s", "q": "rad/s",

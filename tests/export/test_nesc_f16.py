@@ -7,7 +7,7 @@ import pytest
 
 from alula.base.units import FT
 from data import data
-from verification.nesc_f16 import beside, f16, flown, recorded_start, sims, trimmed
+from verification.simulator.nesc_f16 import beside, f16, flown, recorded_start, sims, trimmed
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,7 @@ import pytest
 from identify_flights import twin_otter
 
 from alula.identify import identify_equation_error
-from verification.published import TWIN_OTTER
+from verification.main_job.published import TWIN_OTTER
 
 MODELS = {"CZ": "1 + alpha + qhat + de", "Cm": "1 + alpha + qhat + de"}
 

@@ -15,7 +15,7 @@ from alula.identify.linear.filter_error import FilterError, identify_filter_erro
 from alula.identify.linear.model import linear_model
 from alula.identify.linear.record import Unknowns, linear_record
 from data import data
-from verification import dhc2
+from verification.estimation import dhc2
 
 TRUE = {"Lp": -3.0, "Lda": -12.0, "L0": 0.05}
 F, SIGMA, DT = 0.2, 0.02, 0.02

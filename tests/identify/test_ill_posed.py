@@ -12,7 +12,7 @@ from alula.identify.flown.saturation import saturated
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 
-from verification.ill_posed import KINDS, judged, problem
+from verification.estimation.ill_posed import KINDS, judged, problem
 
 
 @pytest.mark.parametrize("kind", KINDS)

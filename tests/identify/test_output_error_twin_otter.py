@@ -7,7 +7,13 @@ import pytest
 from scipy.io import loadmat
 
 from data import data
-from verification.twin_otter_output_error import FLOWN, PUBLISHED, compared, identified, maneuver
+from verification.estimation.twin_otter_output_error import (
+    FLOWN,
+    PUBLISHED,
+    compared,
+    identified,
+    maneuver,
+)
 
 
 @pytest.fixture(scope="module")

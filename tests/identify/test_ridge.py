@@ -10,7 +10,16 @@ from alula.identify.regression.regress import Block, regress
 from alula.identify.regression.ridge import ridge
 from alula.identify.regression.shrinkage import bias_matrix
 from alula.identify.trust.verdict import assess
-from verification.collinear import FREE, NAMES, NOISE, TRUTH, K, check, closed_form, design
+from verification.estimation.collinear import (
+    FREE,
+    NAMES,
+    NOISE,
+    TRUTH,
+    K,
+    check,
+    closed_form,
+    design,
+)
 
 
 def fitted(seed=0, sigma=NOISE):

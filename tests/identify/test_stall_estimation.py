@@ -17,7 +17,7 @@ from alula.model import load_model, save_model
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 
-from verification.stall_identification import FORMULAS, identified, stall_data, wing
+from verification.estimation.stall_identification import FORMULAS, identified, stall_data, wing
 
 
 def test_dynamic_stall_tells_all_four():

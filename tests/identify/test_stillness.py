@@ -13,7 +13,7 @@ from alula.identify.likelihood.stillness import still
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 
-from verification.ill_posed import LONGITUDINAL, identify_output_error, problem
+from verification.estimation.ill_posed import LONGITUDINAL, identify_output_error, problem
 
 
 @pytest.mark.parametrize("seed", [456, 666])

@@ -18,7 +18,7 @@ from alula.identify.regression.orthogonal_functions import (
 from alula.identify.regression.stepwise import partial_f, stepwise
 from alula.identify.regression.structure import Pool, orthonormal, press
 from data import data
-from verification import structure
+from verification.estimation import structure
 
 POOL = "(1, alpha, qhat, de)^2 + (alpha - [0.05])+^2"
 

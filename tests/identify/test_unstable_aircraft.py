@@ -10,7 +10,7 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 
-from verification.unstable import (
+from verification.estimation.unstable import (
     DERIVATIVES,
     aft_sportstar,
     errors,

@@ -208,7 +208,7 @@ def test_no_inertial_sample_is_refused() -> None:
 
 def test_flight_in_turbulence() -> None:
     """Two and a half minutes of the row that `make verify` judges over ten."""
-    from verification.navigation_flight import navigation_flight
+    from verification.airdata.navigation_flight import navigation_flight
 
     got, holds = navigation_flight(True)
     assert holds, got

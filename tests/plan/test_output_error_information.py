@@ -14,8 +14,8 @@ from alula.plan.output_error_information import predict_output_error
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 
-from verification.campaign_coverage import CASES, flights, output_error
-from verification.noisy_flights import SIGMA, measured, sportstar
+from verification.estimation.campaign_coverage import CASES, flights, output_error
+from verification.estimation.noisy_flights import SIGMA, measured, sportstar
 
 
 def predicted(sigma=SIGMA, more=""):

@@ -19,8 +19,8 @@ from alula.predict.handbook import Found
 from alula.predict.semi_empirical import from_geometry, semi_empirical
 from data import data
 from predict.predicted_shapes import FOIL, B, C, S, light_airplane
-from verification.armhawk_surfaces import armhawk_surfaces
-from verification.sportstar_prediction import sportstar_prediction
+from verification.prediction.armhawk_surfaces import armhawk_surfaces
+from verification.prediction.sportstar_prediction import sportstar_prediction
 
 POINT = np.zeros(3)
 AIRCRAFT = Path(__file__).parents[2] / "aircraft"

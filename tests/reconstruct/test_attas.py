@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from real import reconstructed
-from verification.published import ATTAS_BIASES
+from verification.main_job.published import ATTAS_BIASES
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,7 @@ import pytest
 from scipy.io import loadmat
 
 from data import data
-from verification.harv import harv_reconstruction
+from verification.main_job.harv import harv_reconstruction
 
 FT = 0.3048
 

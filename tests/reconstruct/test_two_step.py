@@ -6,8 +6,8 @@ import pytest
 from alula.flight import Maneuver
 from alula.reconstruct import reconstruct
 from data import data
-from verification import two_step
-from verification.two_step_linear import paired_nees, paired_table
+from verification.main_job import two_step
+from verification.main_job.two_step_linear import paired_nees, paired_table
 
 # 40 s at 20 Hz: the maneuvers are over at 20 s. Ten times shorter in samples, same motion.
 SHORT = {"every": 5, "end": 40.0}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from data import ROOT, data
-from verification import nesc
+from verification.simulator import nesc
 
 
 @pytest.mark.parametrize("number", sorted(nesc.CASES))
