@@ -1,9 +1,11 @@
 """The reconstruction's uncertainty carried into an estimate by filter error.
 
 As `carried` does for output error. Readings one standard deviation off go through the filter at the
-estimate; what that changes of its whitened residuals e moves the estimate by one Gauss-Newton step,
-`(X'X)^-1 X' de`, X the residuals' sensitivities. The change is half of that between readings off to
-either side: its even part is no step, and has no mean over the direction's two signs.
+estimate; what that changes of its whitened innovations e moves the estimate by one Gauss-Newton
+step, `(X'X)^-1 X' de`. X are the sensitivities of e; the information X'X has those of its products,
+too, from which the noises are known. The products themselves are left out: e is as often above zero
+as below, so that their change, e de, has no mean. de is half of the change between readings off to
+either side: what both do alike has no direction.
 """
 
 from __future__ import annotations
@@ -64,19 +66,20 @@ def carried_by_filter(
     shown = [p.name for p in result.parameters]
     kept = [problem.names.index(n) for n in shown]
     slopes = [b.sensitivity[:, kept] for b in blocks]
-    each = len(blocks) // len(learn)
+    each, k = len(blocks) // len(learn), len(outputs)
     score = np.zeros((len(kept), len(shifts)))
     for i, m in enumerate(learn):
         for s, shift in enumerate(shifts):
             off = shift.get(m.maneuver.id, {})
             if not off.keys() & set(m.outputs):
                 continue
-            up, down = (_residuals(problem, i, estimate, m, models, off, sign, tied)
+            up, down = (_innovations(problem, i, estimate, m, models, off, sign, tied)
                         for sign in (1.0, -1.0))  # fmt: skip
             if up is None or down is None:
                 return result
-            for X, high, low in zip(slopes[i * each : (i + 1) * each], up, down, strict=True):
-                score[:, s] += X.T @ (0.5 * (high - low))
+            change = 0.5 * (up - down)
+            for X, de in zip(slopes[i * each : i * each + k], change.T, strict=True):
+                score[:, s] += X.T @ de
     slopes += [b.sensitivity for b in prior_blocks(shown, estimate[kept], priors or {})]
     information = np.sum([X.T @ X for X in slopes], axis=0)
     step = np.linalg.pinv(information, hermitian=True) @ score
@@ -96,7 +99,7 @@ def _estimate(
     return out
 
 
-def _residuals(
+def _innovations(
     problem: ExtendedFilter,
     i: int,
     estimate: Array,
@@ -105,8 +108,8 @@ def _residuals(
     off: Mapping[str, Array],
     sign: float,
     tied: Ties,
-) -> list[Array] | None:
-    """Whitened residuals of a maneuver's filter with its readings off; None where it diverges."""
+) -> Array | None:
+    """Whitened innovations (n, k) of a maneuver with its readings off; None where it diverges."""
     readings = {n: x + sign * off[n] if n in off else x for n, x in m.outputs.items()}
     run = core_filter(replace(m, outputs=readings), models, problem.models[i], tied)
     found = run(*problem.arguments(i, estimate[None, :]))

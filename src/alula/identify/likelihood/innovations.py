@@ -71,7 +71,10 @@ class InnovationLikelihood:
         return Point(_cost(runs), gradient, information)
 
     def blocks(self, p: Array) -> list[Whitened]:
-        """The likelihood at p as a regression, see `_rows`."""
+        """The likelihood at p as a regression, see `_rows`.
+
+        Of each maneuver in turn, those of the whitened innovations (k outputs) first.
+        """
         h, runs = self._around(p)
         out = []
         for r in runs or []:
@@ -103,18 +106,11 @@ class InnovationLikelihood:
         return runs
 
 
-def whitened(v: Array, S: Array) -> list[Array]:
-    """Residuals (n,) of one filter's innovations v (n, k) of covariance S (n or 1, k, k).
-
-    With S = L L' and e = L^-1 v, first each of e, then for each pair a <= b the product e_a e_b
-    minus its expectation, over its standard deviation.
-    """
-    n, k = v.shape
+def whitened(v: Array, S: Array) -> Array:
+    """L^-1 v (n, k) of innovations v (n, k) and their covariance S = L L' (n or 1, k, k)."""
     inverse = np.linalg.inv(np.linalg.cholesky(S))
-    e = np.einsum("nab,nb->na", np.broadcast_to(inverse, (n, k, k)), v)
-    pairs = [(a, b) for a in range(k) for b in range(a, k)]
-    products = [(e[:, a] ** 2 - 1.0) / 2**0.5 if a == b else e[:, a] * e[:, b] for a, b in pairs]
-    return [*e.T, *products]
+    out: Array = np.einsum("nab,nb->na", np.broadcast_to(inverse, (*v.shape, v.shape[1])), v)
+    return out
 
 
 def _cost(runs: Sequence[Innovations]) -> float:
@@ -132,9 +128,10 @@ def _cost(runs: Sequence[Innovations]) -> float:
 def _rows(r: Innovations, h: Array) -> tuple[Places, list[tuple[Array, Array]]]:
     """The parameters that concern a maneuver, and blocks X (n, them), residual (n,) of it.
 
-    The sum of X'X is the information and that of X'residual minus the gradient, exactly. Residuals
-    are those of `whitened`; the regressor of a pair is (L^-1 dS L^-T)_ab: mean 0, variance 1, white
-    if the model is right.
+    The sum of X'X is the information and that of X'residual minus the gradient, exactly. With
+    S = L L' and e = L^-1 v, the innovations give one block for each of e; their covariance gives
+    one for each pair a <= b, e_a e_b minus its expectation over its standard deviation, with
+    (L^-1 dS L^-T)_ab as regressor: mean 0, variance 1, white if the model is right.
     """
     n, k = r.v.shape[1:]
     place = np.zeros(2 * len(h) + 1, dtype=np.intp)
@@ -146,12 +143,15 @@ def _rows(r: Innovations, h: Array) -> tuple[Places, list[tuple[Array, Array]]]:
     dv = (r.v[up] - r.v[down]) / apart[:, None, None]
     dS = (r.S[up] - r.S[down]) / apart[:, None, None, None]
     inverse_n = np.broadcast_to(inverse, (n, k, k))
-    residuals = whitened(r.v[0], r.S[0])
+    e = whitened(r.v[0], r.S[0])
     de = np.einsum("nab,jnb->naj", inverse_n, dv, optimize=True)
     turn = inverse @ dS @ np.swapaxes(inverse, -1, -2)  # (j, n or 1, k, k)
-    slopes = [-de[:, a] for a in range(k)]
+    out = [(-de[:, a], e[:, a]) for a in range(k)]
     for a in range(k):
         for b in range(a, k):
             column = np.broadcast_to(turn[:, :, a, b].T, (n, j))
-            slopes.append(column / 2**0.5 if a == b else column)
-    return columns, list(zip(slopes, residuals, strict=True))
+            if a == b:
+                out.append((column / 2**0.5, (e[:, a] ** 2 - 1.0) / 2**0.5))
+            else:
+                out.append((column, e[:, a] * e[:, b]))
+    return columns, out
