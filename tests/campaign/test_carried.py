@@ -9,8 +9,11 @@ import numpy as np
 import pytest
 
 from alula.campaign.check import check_project
+from alula.campaign.identify_task import IdentifyTask
 from alula.campaign.measured import measured_maneuvers
-from alula.identify.flown.carried import carried
+from alula.campaign.methods import identify_by
+from alula.identify import Identification
+from alula.identify.flown.carried import Shifts, carried
 from alula.identify.flown.fit import Covariance
 from alula.identify.flown.output_error import identify_output_error
 from alula.identify.flown.problem import STATE_SETS, Setting
@@ -56,6 +59,40 @@ def test_the_step_is_what_other_readings_give(
         assert abs(step - abs(q.value - p.value)) < 0.02 * p.se
         assert w.ci95[1] - w.ci95[0] >= p.ci95[1] - p.ci95[0]
         told += step > 0.1 * p.se
+    assert told > 0  # the direction matters to some parameter
+
+
+def test_filter_error_carries_it_too(demo_files: Path, tmp_path: Path) -> None:
+    """As the command goes, with a tie: one direction against an estimate made anew, either way."""
+    checked = check_project(str(small_project(demo_files, tmp_path / "project").path))
+    path = reconstruct(
+        checked.flights, checked.maneuvers, checked.aircraft, checked.project.reconstruct
+    )
+    (maneuver,), _, shifts = measured_maneuvers(checked, path)
+    models = checked.project.identify.models
+    id = maneuver.maneuver.id
+    strongest = max(shifts, key=lambda s: np.abs(s[id].get("alpha", np.zeros(1))).max())
+
+    def identified(sign: float, carry: list[Shifts]) -> Identification:
+        outputs = {n: x + sign * strongest[id].get(n, 0.0) for n, x in maneuver.outputs.items()}
+        measured = ((replace(maneuver, outputs=outputs),), (), carry)
+        options = {"tied": {"CL_q": "0.5*Cm_q"}}
+        task = IdentifyTask((), lambda: measured, models, maneuver.reference, options)
+        return identify_by("fe", task)
+
+    found, wider = identified(0.0, []), identified(0.0, [strongest])
+    up, down = identified(1.0, []), identified(-1.0, [])
+    assert found.tied == wider.tied == {"CL_q": ("Cm_q", 0.5)}
+    assert wider.uncertainty.endswith("reconstruction")
+    assert not found.uncertainty.endswith("reconstruction")
+    told = 0
+    for p, w in zip(found.parameters, wider.parameters, strict=True):
+        step = np.sqrt(max(w.se**2 - p.se**2, 0.0))
+        anew = 0.5 * abs(up[p.name].value - down[p.name].value)
+        if not p.name.startswith(("F_", "sigma_")):  # which no constant moves but by chance
+            assert abs(step - anew) < 0.02 * p.se  # as output error's
+        told += step > 0.1 * p.se
+        assert w.unit
     assert told > 0  # the direction matters to some parameter
 
 

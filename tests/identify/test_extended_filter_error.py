@@ -9,8 +9,6 @@ import numpy as np
 import pytest
 
 from alula.base.messages import BadInput
-from alula.flight import Maneuver
-from alula.identify import Reference
 from alula.identify.flown.extended_filter_error import (
     ExtendedFilter,
     FunctionModel,
@@ -19,18 +17,18 @@ from alula.identify.flown.extended_filter_error import (
 )
 from alula.identify.flown.filter_error import (
     STATES_OF,
-    _record,
     core_filter,
-    flight_functions,
     identify_flight_filter_error,
 )
-from alula.identify.flown.measured_maneuver import OUTPUTS, STATES, MeasuredManeuver
+from alula.identify.flown.flight_functions import flight_functions, record_of
+from alula.identify.flown.measured_maneuver import OUTPUTS, STATES
 from alula.identify.flown.start import measured_coefficients
 from alula.identify.likelihood.innovations import InnovationLikelihood
 from alula.identify.linear.filter_error import FilterError, identify_filter_error
 from alula.identify.linear.model import linear_model, sample
 from alula.identify.linear.record import Unknowns, linear_record
 from identify.flown_maneuvers import LATERAL, LONGITUDINAL, TRUTH, every_axis, flown
+from identify.gusty_maneuver import FORMULAS, TRUE, short_period
 
 DT = 0.04
 
@@ -186,7 +184,7 @@ def test_the_core_filters_as_the_functions_do(case):
     intensity = random.uniform(1e-5, 1e-3, (3, len(states)))
     R = random.uniform(1e-6, 1e-3, (3, len(outputs)))
     core = core_filter(m, models, functions)(values, x0, intensity, R)
-    slow = function_filter(functions, _record(m, outputs), values, x0, intensity, R)
+    slow = function_filter(functions, record_of(m, outputs), values, x0, intensity, R)
     assert core is not None
     assert slow is not None
     size = np.sqrt(np.einsum("mnkk->mnk", slow.S))
@@ -207,66 +205,6 @@ def test_a_motion_that_diverges_has_no_innovations():
     assert run(values, x0, np.zeros((1, 8)), np.ones((1, 1))) is None
 
 
-TRUE = {
-    "CZ_0": -0.45,
-    "CZ_alpha": -5.5,
-    "Cm_0": 0.02,
-    "Cm_alpha": -1.2,
-    "Cm_q": -25.0,
-    "Cm_de": -1.5,
-}
-FORMULAS = {"CZ": "1 + alpha", "Cm": "1 + alpha + qhat + de"}
-
-
-def short_period(seed, n=200):
-    """Alpha and q of a light airplane in turbulence, by Euler's rule at 20 steps a sample and
-    equations written out here: 60 m/s, S 16 m2, c 1.5 m, 1100 kg, Iyy 1800 kg m2.
-    """
-    rng = np.random.default_rng(seed)
-    t = DT * np.arange(n)
-    de = 0.03 * np.sign(np.sin(2.0 * np.pi * t / 2.5)) * (t > 1.0) + 0.005
-    V, qS, m, Iyy, g = 60.0, 0.5 * 1.2 * 60.0**2 * 16.0, 1100.0, 1800.0, 9.80665
-    alpha, q = np.empty(n), np.empty(n)
-    az = np.empty(n)
-    a, w = 0.012, 0.0
-    v, fine = TRUE, DT / 20
-    for i in range(n):
-        alpha[i], q[i] = a, w
-        az[i] = qS * (v["CZ_0"] + v["CZ_alpha"] * a) / m
-        for k in range(20):
-            d = de[i] + (de[min(i + 1, n - 1)] - de[i]) * (k + 0.5) / 20
-            CZ = v["CZ_0"] + v["CZ_alpha"] * a
-            Cm = v["Cm_0"] + v["Cm_alpha"] * a + v["Cm_q"] * w * 1.5 / (2 * V) + v["Cm_de"] * d
-            # theta = 0 and CX = 0 as 'measured'
-            rate = w + (np.cos(a) * (qS * CZ / m + g)) / V
-            a += fine * rate + 0.01 * fine**0.5 * rng.standard_normal()
-            w += fine * qS * 1.5 * Cm / Iyy + 0.05 * fine**0.5 * rng.standard_normal()
-    zero = np.zeros(n)
-    noisy = {
-        "alpha": alpha + 0.002 * rng.standard_normal(n),
-        "q": q + 0.004 * rng.standard_normal(n),
-        "az": az + 0.2 * rng.standard_normal(n),
-    }
-    motion = dict.fromkeys(STATES, zero) | {"V": np.full(n, V)}
-    motion |= {k: noisy[k] for k in ("alpha", "q")}
-    return MeasuredManeuver(
-        maneuver=Maneuver("gusty", "log", "3211", 0.0, t[-1], "longitudinal"),
-        t=t,
-        outputs=noisy,
-        motion=motion,
-        controls={"de": de},
-        rho=np.full(n, 1.2),
-        reference=Reference(16.0, 11.0, 1.5, np.zeros(3)),
-        mass=m,
-        inertia=np.diag([1500.0, Iyy, 3000.0]),
-        speed_of_sound=np.full(n, 340.0),
-        force=np.zeros((n, 3)),
-        moment=np.zeros((n, 3)),
-        arm=np.zeros(3),
-        coefficients=dict.fromkeys(("CX", "CY", "CZ", "Cl", "Cm", "Cn"), zero),
-    )
-
-
 def test_equations_of_motion_in_turbulence():
     """One gusty maneuver: every derivative within 4 of its errors and known to a third at least."""
     found = identify_flight_filter_error(
@@ -284,6 +222,50 @@ def test_equations_of_motion_in_turbulence():
         assert found[name].se < abs(TRUE[name]) / 3.0
     assert found["F_q"].value == pytest.approx(0.05, rel=0.5)
     assert found["Cm_q"].coefficient == "Cm"
+    units = {p.name: p.unit for p in found.parameters}
+    assert units["F_alpha"] == "rad/s^0.5"
+    assert units["sigma_az"] == "m/s2"
+    assert units["q(0)[gusty]"] == "rad/s"
+    assert units["Cm_q"] == "1/rad"
+
+
+def test_a_tied_term_is_its_factor_times_the_other():
+    """Along the tie the same likelihood as with the tied term held at what the tie gives it; as an
+    estimate it keeps to the other term, and the model knows it.
+    """
+    m = short_period(3)
+    at = {"states": STATES_OF["longitudinal"], "outputs": ["alpha", "q", "az"]}
+    at["start"] = {k: 0.7 * v for k, v in TRUE.items()}
+    tied = identify_flight_filter_error([m], FORMULAS, tied={"Cm_de": ("Cm_q", 0.06)}, **at)
+    assert "Cm_de" not in tied.params.index
+    held = {"Cm_de": 0.06 * tied["Cm_q"].value, "Cm_q": tied["Cm_q"].value}
+    fixed = identify_flight_filter_error([m], FORMULAS, fixed=held, **at)
+    for p in fixed.parameters:  # both searches end within 1e-4 of a standard error
+        assert abs(p.value - tied[p.name].value) < 1e-2 * p.se, p.name
+    assert tied["Cm_q"].se < identify_flight_filter_error([m], FORMULAS, **at)["Cm_q"].se
+    assert tied.tied == {"Cm_de": ("Cm_q", 0.06)}
+    for bad in ({"Cm_df": ("Cm_q", 1.0)}, {"Cm_de": ("Cm_de", 1.0)}, {"Cm_de": ("Cm_df", 1.0)}):
+        with pytest.raises(BadInput, match="filter_error"):
+            identify_flight_filter_error([m], FORMULAS, tied=bad, **at)
+
+
+def test_functions_and_core_agree_on_ties():
+    m = flown(every_axis, seconds=2.0, seed=5)
+    m = replace(m, coefficients=measured_coefficients(m))
+    ties = {"Cm_q": ("CZ_q", 2.0), "Cm_de": ("Cm_alpha", 1.4)}
+    states, outputs = ("alpha", "q"), ("alpha", "q", "az")
+    tied = flight_functions(m, LONGITUDINAL, states, outputs, ties)
+    free = flight_functions(m, LONGITUDINAL, states, outputs)
+    values = {n: TRUTH[n] for n in tied.parameters}
+    every = {**values, **{n: k * values[other] for n, (other, k) in ties.items()}}
+    at = np.array([[values[n] for n in tied.parameters]])
+    spelled = np.array([[every[n] for n in free.parameters]])
+    rest = (np.array([[0.05, 0.0]]), np.full((1, 2), 1e-4), np.full((1, 3), 1e-4))
+    same = core_filter(m, LONGITUDINAL, free)(spelled, *rest)
+    core = core_filter(m, LONGITUDINAL, tied, ties)(at, *rest)
+    slow = function_filter(tied, record_of(m, outputs), at, *rest)
+    np.testing.assert_allclose(core.v, same.v, rtol=0, atol=1e-12)  # the same sums
+    np.testing.assert_allclose(core.v, slow.v, rtol=0, atol=1e-7)  # slopes by differences
 
 
 def test_unknown_names_are_refused():

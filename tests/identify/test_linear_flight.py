@@ -8,7 +8,7 @@ import pytest
 from alula.base.messages import BadInput
 from alula.flight import Maneuver
 from alula.identify import Reference
-from alula.identify.flown.filter_error import _record, flight_functions
+from alula.identify.flown.flight_functions import flight_functions, record_of
 from alula.identify.flown.measured_maneuver import STATES, MeasuredManeuver
 from alula.identify.linear.flight import SteadyFlight, linear_flight_model
 
@@ -58,7 +58,7 @@ def nonlinear(states, thrust_z=0.0, push=(0.0, 0.0, 0.0), arm=(0.0, 0.0, 0.0), t
     values = {**DERIVATIVES, **trim}
     p = np.array([values[name] for name in functions.parameters])
     x = np.array([steady[s] for s in states])
-    return functions, x, _record(m, ["q"]).inputs[0], p
+    return functions, x, record_of(m, ["q"]).inputs[0], p
 
 
 @pytest.mark.parametrize(

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-from typing import Any
-
 import numpy as np
 import pytest
 
-from alula.campaign.by_outputs import by_outputs
-from alula.flight import Maneuver
+from alula.identify.linear.filter_error import identify_filter_error
+from alula.identify.linear.model import linear_model
+from alula.identify.linear.output_error import identify_linear_output_error
+from alula.identify.linear.record import linear_record
 from alula.identify.parameter_unit import parameter_unit
-from alula.identify.result import Identification, Parameter
 
 
 @pytest.mark.parametrize(
@@ -29,6 +27,8 @@ from alula.identify.result import Identification, Parameter
         ("alpha", "alpha(0)[elevator]", "rad"),
         ("az", "b_az[elevator]", "m/s2"),
         ("own", "F_own", ""),
+        ("de", "delay_de", "s"),
+        ("p", "p_0", ""),
         ("own", "sigma_own", ""),
     ],
 )
@@ -36,20 +36,24 @@ def test_unit(belongs: str, name: str, unit: str) -> None:
     assert parameter_unit(belongs, name) == unit
 
 
-def test_the_command_states_them() -> None:
-    """Filter error's parameters as the method leaves them come out of the campaign with units."""
-    parameters = tuple(
-        Parameter(n, c, 1.0, 0.1, 0.1, (0.8, 1.2), "ok", (), "", 1.0)
-        for n, c in (("Cm_alpha", "Cm"), ("F_q", "q"), ("sigma_q", "q"))
-    )
-    found = Identification("filter error", parameters, {}, (), np.eye(3), "converged")
-    maneuver: Any = SimpleNamespace(
-        maneuver=Maneuver("m", "log", "", 0.0, 8.0), outputs={"alpha": [], "q": []}
-    )
-    task: Any = SimpleNamespace(
-        options={}, models={"Cm": "1 + alpha"}, truth=None, measure=lambda: ([maneuver], (), [])
-    )
-    result = by_outputs(task, lambda *_, **__: found, {"longitudinal": ("alpha", "q")})
-    assert [p.unit for p in result.parameters] == ["1/rad", "rad/s^1.5", "rad/s"]
-    row = next(line for line in result.summary().splitlines() if line.startswith("F_q"))
+def test_a_linear_model_has_them_but_of_what_its_rows_call_their_own() -> None:
+    """Lp has no name that tells its unit, `p_0` is no derivative of a coefficient."""
+    rng = np.random.default_rng(0)
+    t = 0.04 * np.arange(200)
+    da = 0.06 * np.sign(np.sin(3.0 * t))
+    p = np.zeros(200)
+    for i in range(199):
+        p[i + 1] = 0.9 * p[i] + 0.4 * da[i] + 0.01 * rng.standard_normal()
+    model = linear_model({"p": "Lp*p + Lda*da + p_0"}, ["p"], ["da"])
+    z = p + 0.01 * rng.standard_normal(200)
+    records = [linear_record("roll", t, {"p": z, "da": da}, model)]
+    by_filter = identify_filter_error(model, records)
+    units = {q.name: q.unit for q in by_filter.parameters}
+    assert units == {
+        "Lp": "", "Lda": "", "p_0": "", "p(0)[roll]": "rad/s", "F_p": "rad/s^1.5",
+        "sigma_p": "rad/s",
+    }  # fmt: skip
+    row = next(line for line in by_filter.summary().splitlines() if line.startswith("F_p"))
     assert " rad/s^1.5 " in row
+    by_output = identify_linear_output_error(model, records)
+    assert by_output["p(0)[roll]"].unit == "rad/s"

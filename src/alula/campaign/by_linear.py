@@ -33,15 +33,15 @@ from alula.identify.flown.start import regressor_variables
 from alula.identify.linear.flight import LATERAL, LONGITUDINAL, SteadyFlight, linear_flight_model
 from alula.identify.linear.record import linear_record
 from alula.identify.merge import merged
+from alula.identify.parameter_unit import with_units
 from alula.identify.trust.control_sign import contradicted, signs_checked
 from alula.identify.trust.feedback import feedback, warn_of_feedback
-from alula.identify.typical import constant_name, unit
+from alula.identify.typical import constant_name
 from alula.model import parse, reference_scales
 
 # How far a maneuver may go from the mean flight. A tenth of the airspeed is a fifth of the dynamic
 # pressure; at 20 deg of bank the sine has lost 2 %, and the turn adds a pitch rate.
 AIRSPEED, ANGLE, BANK = 0.1, np.deg2rad(6.0), np.deg2rad(20.0)
-UNITS = {"V": "m/s", "p": "rad/s", "q": "rad/s", "r": "rad/s"}
 
 
 def by_linear(
@@ -120,9 +120,9 @@ def _part(
     options["scales"] = {**enough, **options.get("scales", {})}
     found = identify(model, records, **options, truth=truth)
     parameters = tuple(
-        replace(p, coefficient=_belongs(p.name, p.coefficient, models), unit=_unit(p.name, models))
-        for p in found.parameters
+        replace(p, coefficient=_belongs(p.name, p.coefficient, models)) for p in found.parameters
     )
+    parameters = with_units(replace(found, parameters=parameters)).parameters
     parameters, turned = signs_checked(parameters)
     if far := _far(learn):
         parameters = tuple(
@@ -226,13 +226,3 @@ def _belongs(name: str, row: str, models: Mapping[str, str]) -> str:
     """The coefficient of a derivative; else the state or output."""
     head = name.split("_")[0]
     return head if head in models else row.removesuffix("dot")
-
-
-def _unit(name: str, models: Mapping[str, str]) -> str:
-    head = name.split("_")[0]
-    if head in models:
-        return unit(head, name)
-    if head == "delay":
-        return "s"
-    state = name.split("(")[0]
-    return UNITS.get(state, "rad") if "(0)" in name else ""

@@ -12,12 +12,13 @@ from alula.campaign.options import bad_option, factors, one_of, priors_of
 from alula.identify import Identification
 from alula.identify.equation_error.task import LONGITUDINAL
 from alula.identify.flown.carried import carried
+from alula.identify.flown.carried_filter_error import carried_by_filter
+from alula.identify.flown.filter_error import identify_flight_filter_error
 from alula.identify.flown.measured_maneuver import MeasuredManeuver
 from alula.identify.flown.output_error import identify_output_error
 from alula.identify.flown.problem import STATE_SETS, Setting
 from alula.identify.flown.usual_outputs import USUAL_OUTPUTS
 from alula.identify.merge import merged
-from alula.identify.parameter_unit import with_units
 from alula.model import parse
 
 LATERAL_OUTPUTS = frozenset({"beta", "p", "r", "phi", "ay", "pdot", "rdot"})
@@ -74,15 +75,12 @@ def by_outputs(
             setting = Setting(flown, tuple(outputs), **{k: own[k] for k in _SETTING & own.keys()})
             rest = {k: own[k] for k in ("noise", "priors", "scales", "covariance") if k in own}
             found = carried(found, chosen, models, shifts, setting, **rest)
-        results.append(
-            with_units(
-                replace(
-                    found,
-                    formulas=found.formulas or models,
-                    fixed=found.fixed or of_formulas(own.get("fixed", {}), models),
-                )
+        elif identify is identify_flight_filter_error:
+            same = {k: v for k, v in own.items() if k != "algorithm"}
+            found = carried_by_filter(
+                found, chosen, models, shifts, states=flown, outputs=outputs, **same
             )
-        )
+        results.append(found)
     result = merged(results)
     said = (*messages, *left_aside(options, owns))
     return replace(result, messages=(*said, *result.messages))

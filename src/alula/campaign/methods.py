@@ -208,6 +208,7 @@ IDENTIFIERS: Mapping[str, Method] = {
             "noisy": "list",
             "start": "numbers",
             "fixed": "numbers",
+            "tied": "texts",
             "bounds": "pairs",
             "priors": "pairs",
             "common_constant": "flag",

@@ -6,20 +6,23 @@ from dataclasses import replace
 
 from alula.base.units import expected_unit
 from alula.identify.result import Identification
-from alula.identify.typical import unit
+from alula.identify.typical import TYPICAL, unit
 
 
 def parameter_unit(belongs: str, name: str) -> str:
     """Unit of a parameter; belongs: the coefficient, state or output that it stands in.
 
     'F_q' drives a state: the state's unit over the root of a second, 'rad/s^1.5'. 'sigma_q',
-    'b_q' and 'q(0)[id]' have the unit of what they belong to. '' where that is not known.
+    'b_q' and 'q(0)[id]' have the unit of what they belong to, delays are in seconds. '' where that
+    is not known, as of the parameters of a linear model's own rows.
     """
     if name.startswith("F_"):
         return _per_root_second(expected_unit(belongs) or "")
     if name.startswith(("sigma_", "b_")) or "(0)" in name:
         return expected_unit(belongs) or ""
-    return unit(belongs, name)
+    if name.startswith("delay_"):
+        return "s"
+    return unit(belongs, name) if belongs in TYPICAL else ""
 
 
 def with_units(result: Identification) -> Identification:

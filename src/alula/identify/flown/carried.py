@@ -1,14 +1,14 @@
-"""The reconstruction's uncertainty carried into an estimate by output error.
+"""The reconstruction's uncertainty carried into an estimate from readings.
 
 A bias that reconstruction found one standard deviation off moves every reading of its sensor, and
-the estimate by one Gauss-Newton step, `(sum J' R^-1 J)^-1 sum J' R^-1 dz`. The squares of these
-steps, over all independent directions of the reconstruction's uncertainty, are added to the
-variances.
+the estimate by one Gauss-Newton step: for output error `(sum J' R^-1 J)^-1 sum J' R^-1 dz`. The
+squares of these steps, over all independent directions of the reconstruction's uncertainty, are
+added to the variances.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -17,12 +17,14 @@ from alula.base.arrays import Array, frozen
 from alula.identify.flown.core_maneuver import formula_model
 from alula.identify.flown.fit import Covariance
 from alula.identify.flown.measured_maneuver import MeasuredManeuver
+from alula.identify.flown.output_error import good_enough
 from alula.identify.flown.output_likelihood import likelihood_of
 from alula.identify.flown.problem import FlightProblem, Setting
 from alula.identify.likelihood.parameters import Prior
-from alula.identify.result import Identification
+from alula.identify.linear.noise_search import noise_verdict
+from alula.identify.result import Identification, Parameter
 from alula.identify.trust.verdict import verdict
-from alula.model import parse, reference_scales
+from alula.model import parse
 
 Shifts = Mapping[str, Mapping[str, Array]]  # by maneuver and output: (n,)
 _NORMAL = 1.96  # what is added counts as known
@@ -40,14 +42,15 @@ def carried(
     scales: Mapping[str, float] | None = None,
     covariance: Covariance = "diagonal",
 ) -> Identification:
-    """The result with the shifts of the readings, one for each direction, in its error bars.
+    """Output error's result with the shifts of the readings, one for each direction, in its error
+    bars.
 
     A result in which some parameter has no value is returned as it is.
     """
-    theta = np.array([p.value for p in result.parameters])
     learn = [m for m in maneuvers if not m.maneuver.held_out]
-    if not shifts or not len(theta) or not np.isfinite(theta).all():
+    if not shifts or not has_values(result):
         return result
+    theta = np.array([p.value for p in result.parameters])
     values = {t.name(c): 0.0 for c, formula in models.items() for t in parse(formula)}
     model = formula_model(models, {**values, **setting.fixed}, learn[0].reference)
     problem = FlightProblem(learn, model, setting)
@@ -71,25 +74,62 @@ def carried(
                 if moved is not None:
                     score[:, s] += weighted[heard, o].T @ moved[heard]
     step = np.linalg.pinv(information, hermitian=True) @ score
+    return with_steps(result, step, {**good_enough(models, problem.names), **(scales or {})})
+
+
+def has_values(result: Identification) -> bool:
+    """Whether there are parameters and every one has a value."""
+    values = [p.value for p in result.parameters]
+    return bool(values) and bool(np.isfinite(values).all())
+
+
+def with_steps(
+    result: Identification,
+    step: Array,
+    enough: Mapping[str, float],
+    logarithmic: Collection[str] = (),
+) -> Identification:
+    """The result with independent steps of its estimate (k, directions) in its error bars.
+
+    enough: standard errors that are good enough, by name. logarithmic: noises, whose steps and
+    intervals are those of their logarithms. A verdict can only get worse by it.
+    """
+    gain = [p.value if p.name in logarithmic else 1.0 for p in result.parameters]
+    step = step * np.array(gain)[:, None]
     added = step @ step.T
-    enough = {
-        n: v for c, formula in models.items() for n, v in reference_scales(c, formula).items()
-    }
-    enough.update(scales or {})
     parameters = []
-    for p, extra in zip(result.parameters, np.diag(added).tolist(), strict=True):
-        se = float(np.hypot(p.se, np.sqrt(extra)))
-        half = float(np.hypot(0.5 * (p.ci95[1] - p.ci95[0]), _NORMAL * np.sqrt(extra)))
-        middle = 0.5 * (p.ci95[0] + p.ci95[1])
-        ci95 = (middle - half, middle + half)
-        judged = verdict(p.value, se, ci95, enough.get(p.name))
-        parameters.append(replace(p, se=se, ci95=ci95, verdict=judged))
+    for p, extra in zip(result.parameters, np.sqrt(np.diag(added)).tolist(), strict=True):
+        wider = _noise(p, extra) if p.name in logarithmic else _plain(p, extra, enough.get(p.name))
+        parameters.append(wider if p.verdict == "ok" else replace(wider, verdict=p.verdict))
     weak = ", ".join(p.name for p in parameters if p.verdict == "weak")
-    why = result.status.split("; ")[0]
+    told = f"weak: {weak}" if weak else "every parameter is resolved"
+    said = result.status.split("; ")
+    old = [s.startswith("weak: ") or s == "every parameter is resolved" for s in said]
     return replace(
         result,
         parameters=tuple(parameters),
         covariance=frozen(result.covariance + added),
-        status=f"{why}; " + (f"weak: {weak}" if weak else "every parameter is resolved"),
+        status="; ".join(told if o else s for s, o in zip(said, old, strict=True)),
         uncertainty=f"{result.uncertainty} + reconstruction",
     )
+
+
+def _plain(p: Parameter, extra: float, enough: float | None) -> Parameter:
+    se = float(np.hypot(p.se, extra))
+    half = float(np.hypot(0.5 * (p.ci95[1] - p.ci95[0]), _NORMAL * extra))
+    middle = 0.5 * (p.ci95[0] + p.ci95[1])
+    ci95 = (middle - half, middle + half)
+    return replace(p, se=se, ci95=ci95, verdict=verdict(p.value, se, ci95, enough))
+
+
+def _noise(p: Parameter, extra: float) -> Parameter:
+    """As `natural_scale` has it: the interval that of the logarithm, 'ok' if known to a factor."""
+    se = float(np.hypot(p.se, extra))
+    judged = noise_verdict(se / p.value)
+    low, high = p.ci95
+    if not low > 0.0:  # a logarithm so wide that it has left the numbers
+        return replace(p, se=se, verdict=judged)
+    half = float(np.hypot(0.5 * np.log(high / low), _NORMAL * extra / p.value))
+    middle = 0.5 * np.log(high * low)
+    low, high = float(np.exp(middle - half)), float(np.exp(min(middle + half, 700.0)))
+    return replace(p, se=se, ci95=(low, high), verdict=judged)

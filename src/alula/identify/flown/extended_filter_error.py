@@ -81,6 +81,27 @@ def identify_extended_filter_error(
     with the same names (masses may differ). start: values of all parameters; of noises where known
     better than the outputs' roughness tells. Raises BadInput where one is missing.
     """
+    problem = extended_filter(
+        models, records, start=start, noisy=noisy, own=own, fixed=fixed, method=method
+    )
+    model = problem.models[0]
+    return search_noises(
+        method, problem, model.outputs, model.rows, problem.records, bounds or {}, priors or {},
+        algorithm, scales or {}, truth or {}, left_aside(records),
+    )  # fmt: skip
+
+
+def extended_filter(
+    models: FunctionModel | Sequence[FunctionModel],
+    records: Sequence[LinearRecord],
+    *,
+    start: Mapping[str, float],
+    noisy: Collection[str] | None = None,
+    own: Collection[str] = (),
+    fixed: Mapping[str, float] | None = None,
+    method: str = "filter error, extended",
+) -> ExtendedFilter:
+    """The filters whose likelihood `identify_extended_filter_error` seeks; arguments as there."""
     learn = learned(records)
     each = [models] * len(learn) if isinstance(models, FunctionModel) else list(models)
     model = each[0]
@@ -95,11 +116,7 @@ def identify_extended_filter_error(
             found=", ".join(missing) or f"noisy {driven}, {len(each)} models",
             do="Give start values, equation error's for example.",
         )
-    problem = ExtendedFilter(each, learn, unknowns, driven, fixed or {}, start)
-    return search_noises(
-        method, problem, model.outputs, model.rows, learn, bounds or {}, priors or {}, algorithm,
-        scales or {}, truth or {}, left_aside(records),
-    )  # fmt: skip
+    return ExtendedFilter(each, learn, unknowns, driven, fixed or {}, start)
 
 
 class ExtendedFilter(NoisyProblem):

@@ -10,7 +10,7 @@ turns the cost into N/2 ln det R, or the sum of N/2 ln r_i.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Literal
 
@@ -33,14 +33,12 @@ from alula.identify.result import Identification, Parameter
 from alula.identify.trust.control_sign import signs_checked
 from alula.identify.trust.feedback import Feedback, distrusted, feedback, warn_of_feedback
 from alula.identify.trust.identifiability import UNCERTAIN
-from alula.identify.typical import typical_magnitude, unit
+from alula.identify.typical import typical_magnitude
 from alula.model import AeroModel, parse, reference_scales
 
 StateSet = Literal["longitudinal", "lateral", "six"]
 # Standard errors (m/s; rad, rad/s) at which an initial state is resolved, whatever its value.
 ENOUGH = {"V": 0.5}
-_UNITS = {"V": "m/s", "ax": "m/s2", "ay": "m/s2", "az": "m/s2", "p": "rad/s", "q": "rad/s"}
-_UNITS |= {"r": "rad/s", "pdot": "rad/s2", "qdot": "rad/s2", "rdot": "rad/s2"}
 
 
 def identify_output_error(
@@ -122,8 +120,7 @@ def identify_output_error(
     problem, found = fit.problem, fit.found
     said = [*(m for _, messages in whole for m in messages), *fit.messages, *_pulled(setting)]
     followed: dict[str, tuple[Feedback, ...]] = {}
-    enough = {k: v for c, f in models.items() for k, v in reference_scales(c, f).items()}
-    enough |= {n: ENOUGH.get(n.split("(")[0], 0.01) for n in problem.names if "(0)" in n}
+    enough = good_enough(models, problem.names)
     fitted: list[Fitted] = []
     blocks = []
     if found.converged:
@@ -148,7 +145,7 @@ def identify_output_error(
         truth=truth,
         messages=said,
     )
-    parameters = tuple(replace(p, unit=_unit(p.coefficient, p.name)) for p in result.parameters)
+    parameters = result.parameters
     if setting.stabilize:
         parameters = tuple(distrusted(p, followed.get(p.coefficient, ())) for p in parameters)
     lost = {p.coefficient for p in parameters if p.verdict == "not_identifiable"}
@@ -163,6 +160,12 @@ def identify_output_error(
         messages=(*result.messages, *turned),
         status=result.status + "".join(f"; sign contradicted: {m.where}" for m in turned),
     )
+
+
+def good_enough(models: Mapping[str, str], names: Iterable[str]) -> dict[str, float]:
+    """Standard errors that are good enough: those that formulas state, and of initial states."""
+    out = {k: v for c, f in models.items() for k, v in reference_scales(c, f).items()}
+    return out | {n: ENOUGH.get(n.split("(")[0], 0.01) for n in names if "(0)" in n}
 
 
 def _predicted(
@@ -224,9 +227,3 @@ def _plausible(p: Parameter) -> Parameter:
     typical = typical_magnitude(p.coefficient, p.name)
     far = typical is not None and abs(p.value) > UNCERTAIN * typical
     return replace(p, verdict="weak") if far and p.verdict == "ok" else p
-
-
-def _unit(belongs: str, name: str) -> str:
-    if "(0)" in name or name.startswith("b_"):
-        return _UNITS.get(belongs, "rad")
-    return unit(belongs, name)

@@ -106,20 +106,12 @@ class FlightProblem:
                     ", ".join(bad) or "none",
                     "Correct the list.",
                 )
-        for key, given in (("fixed", s.fixed), ("tied", s.tied)):
-            bad = [name for name in given if name not in names]
-            if bad:
-                raise _refused(
-                    key, f"terms of the model: {', '.join(names)}", ", ".join(bad), "Correct it."
-                )
-        for name, (other, factor) in s.tied.items():
-            if other not in names or other in s.tied or other == name or not np.isfinite(factor):
-                raise _refused(
-                    "tied",
-                    "a term that is not tied itself, and a finite factor",
-                    f"{name} = {factor} {other}",
-                    "Tie terms to one that is estimated or fixed.",
-                )
+        bad = [name for name in s.fixed if name not in names]
+        if bad:
+            raise _refused(
+                "fixed", f"terms of the model: {', '.join(names)}", ", ".join(bad), "Correct it."
+            )
+        check_tied("output error", s.tied, names)
         bad = [name for name in s.biases if name not in s.outputs]
         if bad:
             raise _refused("biases", "outputs", ", ".join(bad), "Name outputs that are compared.")
@@ -262,6 +254,25 @@ class FlightProblem:
         """Values of all terms by name, tied and fixed ones included; constants of maneuver 0."""
         values = self._fits[0].values.at(theta)
         return dict(zip(self.model.names, values.tolist(), strict=True))
+
+
+def check_tied(method: str, tied: Mapping[str, tuple[str, float]], names: Sequence[str]) -> None:
+    """Refuse ties of what is no term of the model, or to what is tied itself."""
+    for name, (other, factor) in tied.items():
+        if name not in names:
+            expected, found, do = f"terms of the model: {', '.join(names)}", name, "Correct it."
+        elif other not in names or other in tied or not np.isfinite(factor):
+            expected = "a term that is not tied itself, and a finite factor"
+            found, do = f"{name} = {factor} {other}", "Tie terms to one that is estimated or fixed."
+        else:
+            continue
+        raise refuse(
+            "output_error" if method == "output error" else "filter_error",
+            where=f"{method}, tied",
+            expected=expected,
+            found=found,
+            do=do,
+        )
 
 
 def _first(m: MeasuredManeuver, name: str) -> float:

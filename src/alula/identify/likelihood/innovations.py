@@ -71,7 +71,10 @@ class InnovationLikelihood:
         return Point(_cost(runs), gradient, information)
 
     def blocks(self, p: Array) -> list[Whitened]:
-        """The likelihood at p as a regression, see `_rows`."""
+        """The likelihood at p as a regression, see `_rows`.
+
+        Of each maneuver in turn, those of the whitened innovations (k outputs) first.
+        """
         h, runs = self._around(p)
         out = []
         for r in runs or []:
@@ -101,6 +104,13 @@ class InnovationLikelihood:
             if not (np.isfinite(r.v).all() and np.isfinite(r.S).all() and np.abs(r.v).max() < HUGE):
                 return None
         return runs
+
+
+def whitened(v: Array, S: Array) -> Array:
+    """L^-1 v (n, k) of innovations v (n, k) and their covariance S = L L' (n or 1, k, k)."""
+    inverse = np.linalg.inv(np.linalg.cholesky(S))
+    out: Array = np.einsum("nab,nb->na", np.broadcast_to(inverse, (*v.shape, v.shape[1])), v)
+    return out
 
 
 def _cost(runs: Sequence[Innovations]) -> float:
@@ -133,7 +143,7 @@ def _rows(r: Innovations, h: Array) -> tuple[Places, list[tuple[Array, Array]]]:
     dv = (r.v[up] - r.v[down]) / apart[:, None, None]
     dS = (r.S[up] - r.S[down]) / apart[:, None, None, None]
     inverse_n = np.broadcast_to(inverse, (n, k, k))
-    e = np.einsum("nab,nb->na", inverse_n, r.v[0])
+    e = whitened(r.v[0], r.S[0])
     de = np.einsum("nab,jnb->naj", inverse_n, dv, optimize=True)
     turn = inverse @ dS @ np.swapaxes(inverse, -1, -2)  # (j, n or 1, k, k)
     out = [(-de[:, a], e[:, a]) for a in range(k)]

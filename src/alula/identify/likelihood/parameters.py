@@ -22,6 +22,7 @@ from alula.base.coloured import coloured_covariance
 from alula.base.messages import Message, note, warn
 from alula.identify.likelihood.optimizer import Minimum
 from alula.identify.likelihood.stillness import distrusted_if_still
+from alula.identify.parameter_unit import with_units
 from alula.identify.regression.least_squares import least_squares
 from alula.identify.regression.regress import Block, Regression
 from alula.identify.regression.sandwich import sandwich
@@ -128,6 +129,7 @@ def assembled(
     rows are a transform's, as in `regression_at`, and what is fitted is over frequency, Hz.
 
     Where the search failed no parameter has a value: a point that is no maximum has no error bars.
+    Units as far as names and rows tell them (`parameter_unit`).
     """
     if not blocks or not np.isfinite(found.information).all() or not found.information.any():
         return _failed(method, names, belongs, found, messages)
@@ -182,7 +184,7 @@ def assembled(
         )
         for f in fitted
     )
-    return Identification(
+    result = Identification(
         method=method,
         parameters=parameters,
         fits={
@@ -193,6 +195,7 @@ def assembled(
         status=_status(parameters, found),
         messages=(*messages, *said),
     )
+    return with_units(result)
 
 
 def _at_least(covariance: Array, bound: Array) -> Array:
@@ -240,7 +243,7 @@ def _failed(
         )
         for n in names
     )
-    return Identification(
+    result = Identification(
         method=method,
         parameters=parameters,
         fits={},
@@ -249,6 +252,7 @@ def _failed(
         status=f"failed: {found.why}",
         messages=(*messages, said),
     )
+    return with_units(result)
 
 
 def _quality(name: str, rows: Mapping[str, str], series: Sequence[Series]) -> Fit:

@@ -20,7 +20,7 @@ from alula.identify.likelihood.optimizer import Algorithm, Minimum, minimize
 from alula.identify.likelihood.parameters import Fitted, Prior, Whitened, assembled
 from alula.identify.linear.record import LinearRecord, Unknowns
 from alula.identify.linear.start import white_noise
-from alula.identify.result import Identification, Parameter
+from alula.identify.result import Identification, Parameter, Verdict
 
 QUIET = 1e-4  # of an output's standard deviation: least first value of its noise
 LOWEST, HIGHEST = 1e-3, 1e4  # of a noise's first value: bounds of the search
@@ -73,18 +73,23 @@ class NoisyProblem(ABC):
 
         A maneuver is filtered only with those that differ from the first in what concerns it.
         """
-        intensity = np.zeros((len(members), self.states))
-        intensity[:, self.driven], R = self.noises(members)
         out = []
         for i in range(len(self.records)):
-            values, x0 = self.unknowns.of(i, members[:, : self.free])
-            own = np.hstack([values, x0, intensity, R])
+            given = self.arguments(i, members)
+            own = np.hstack(given)
             at = np.append(0, np.flatnonzero((own != own[0]).any(axis=1)))
-            found = self.filtered(i, values[at], x0[at], intensity[at], R[at])
+            values, x0, intensity, R = (part[at] for part in given)
+            found = self.filtered(i, values, x0, intensity, R)
             if found is None:
                 return None
             out.append(replace(found, members=at))
         return out
+
+    def arguments(self, maneuver: int, members: Array) -> tuple[Array, Array, Array, Array]:
+        """What `filtered` takes of m parameter vectors (m, k)."""
+        intensity = np.zeros((len(members), self.states))
+        intensity[:, self.driven], R = self.noises(members)
+        return *self.unknowns.of(maneuver, members[:, : self.free]), intensity, R
 
     def vector(self, by_name: Mapping[str, float], default: Array) -> Array:
         """(k,) values by name, none of them noises."""
@@ -214,12 +219,17 @@ def natural_scale(result: Identification, logarithmic: Collection[str]) -> Ident
                 se_white=value * p.se_white,
                 se=value * p.se,
                 ci95=(low, high),
-                verdict="ok" if p.se < 0.5 else "weak",
+                verdict=noise_verdict(p.se),
                 truth=None if p.truth is None else float(np.exp(p.truth)),
             )
         )
     covariance = frozen(result.covariance * np.outer(gain, gain))
     return replace(result, parameters=tuple(parameters), covariance=covariance)
+
+
+def noise_verdict(relative: float) -> Verdict:
+    """Of a noise by the standard error of its logarithm."""
+    return "ok" if relative < 0.5 else "weak"
 
 
 def _without_silent(
