@@ -163,6 +163,20 @@ def _delays(task: IdentifyTask) -> Identification:
     return by_linear(task, identify_frequency_output_error, in_time=False)
 
 
+# What every search over outputs takes.
+_OF_A_SEARCH: Mapping[str, Kind] = {
+    "equations": "text",
+    "states": "names",
+    "outputs": "list",
+    "start": "numbers",
+    "fixed": "numbers",
+    "tied": "texts",
+    "bounds": "pairs",
+    "priors": "pairs",
+    "algorithm": "text",
+    "scales": "numbers",
+}
+
 IDENTIFIERS: Mapping[str, Method] = {
     "ee": Method(
         "equation error",
@@ -179,41 +193,23 @@ IDENTIFIERS: Mapping[str, Method] = {
     "oe": Method(
         "output error",
         {
-            "equations": "text",
-            "states": "names",
-            "outputs": "list",
-            "start": "numbers",
-            "fixed": "numbers",
-            "tied": "texts",
-            "bounds": "pairs",
-            "priors": "pairs",
+            **_OF_A_SEARCH,
             "initial": "text",
             "biases": "list",
             "common_constant": "flag",
             "stabilize": "numbers",
             "noise": "numbers",
             "covariance": "text",
-            "algorithm": "text",
             "substeps": "number",
-            "scales": "numbers",
         },
         _output_error,
     ),
     "fe": Method(
         "filter error",
         {
-            "equations": "text",
-            "states": "names",
-            "outputs": "list",
+            **_OF_A_SEARCH,
             "noisy": "list",
-            "start": "numbers",
-            "fixed": "numbers",
-            "tied": "texts",
-            "bounds": "pairs",
-            "priors": "pairs",
             "common_constant": "flag",
-            "algorithm": "text",
-            "scales": "numbers",
         },
         _filter_error,
     ),
@@ -247,18 +243,6 @@ IDENTIFIERS: Mapping[str, Method] = {
 }
 
 # The same methods on the linear equations of flight, equations = "linear".
-_OF_A_SEARCH: Mapping[str, Kind] = {
-    "equations": "text",
-    "states": "names",
-    "outputs": "list",
-    "start": "numbers",
-    "fixed": "numbers",
-    "tied": "texts",
-    "bounds": "pairs",
-    "priors": "pairs",
-    "algorithm": "text",
-    "scales": "numbers",
-}
 LINEAR: Mapping[str, Method] = {
     "oe": Method(
         "output error of the linear equations",

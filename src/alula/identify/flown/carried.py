@@ -16,18 +16,21 @@ import numpy as np
 from alula.base.arrays import Array, frozen
 from alula.identify.flown.core_maneuver import formula_model
 from alula.identify.flown.fit import Covariance
+from alula.identify.flown.good_enough import good_enough
 from alula.identify.flown.measured_maneuver import MeasuredManeuver
-from alula.identify.flown.output_error import good_enough
 from alula.identify.flown.output_likelihood import likelihood_of
 from alula.identify.flown.problem import FlightProblem, Setting
+from alula.identify.flown.saturation import without_saturated
 from alula.identify.likelihood.parameters import Prior
 from alula.identify.linear.noise_search import noise_verdict
 from alula.identify.result import Identification, Parameter
-from alula.identify.trust.verdict import verdict
+from alula.identify.trust.verdict import verdict, weak_words
 from alula.model import parse
 
 Shifts = Mapping[str, Mapping[str, Array]]  # by maneuver and output: (n,)
 _NORMAL = 1.96  # what is added counts as known
+# How the parts of a status begin that tell how well parameters are known.
+_RESOLVED = ("weak: ", "zero within their error: ", "every parameter is resolved")
 
 
 def carried(
@@ -47,7 +50,7 @@ def carried(
 
     A result in which some parameter has no value is returned as it is.
     """
-    learn = [m for m in maneuvers if not m.maneuver.held_out]
+    learn = [without_saturated(m)[0] for m in maneuvers if not m.maneuver.held_out]
     if not shifts or not has_values(result):
         return result
     theta = np.array([p.value for p in result.parameters])
@@ -101,15 +104,15 @@ def with_steps(
     for p, extra in zip(result.parameters, np.sqrt(np.diag(added)).tolist(), strict=True):
         wider = _noise(p, extra) if p.name in logarithmic else _plain(p, extra, enough.get(p.name))
         parameters.append(wider if p.verdict == "ok" else replace(wider, verdict=p.verdict))
-    weak = ", ".join(p.name for p in parameters if p.verdict == "weak")
-    told = f"weak: {weak}" if weak else "every parameter is resolved"
     said = result.status.split("; ")
-    old = [s.startswith("weak: ") or s == "every parameter is resolved" for s in said]
+    kept = [s for s in said if not s.startswith(_RESOLVED)]
+    at = next((i for i, s in enumerate(said) if s.startswith(_RESOLVED)), len(said))
+    kept.insert(at, weak_words(parameters) or _RESOLVED[-1])
     return replace(
         result,
         parameters=tuple(parameters),
         covariance=frozen(result.covariance + added),
-        status="; ".join(told if o else s for s, o in zip(said, old, strict=True)),
+        status="; ".join(kept),
         uncertainty=f"{result.uncertainty} + reconstruction",
     )
 

@@ -20,12 +20,12 @@ from alula.identify.flown.carried import Shifts, has_values, with_steps
 from alula.identify.flown.extended_filter_error import ExtendedFilter, extended_filter
 from alula.identify.flown.filter_error import core_filter, flight_filters
 from alula.identify.flown.flight_functions import NO_TIES, Ties
+from alula.identify.flown.good_enough import good_enough
 from alula.identify.flown.measured_maneuver import MeasuredManeuver
 from alula.identify.likelihood.innovations import InnovationLikelihood, whitened
 from alula.identify.likelihood.named_search import prior_blocks
 from alula.identify.likelihood.parameters import Prior
 from alula.identify.result import Identification
-from alula.model import reference_scales
 
 
 def carried_by_filter(
@@ -83,7 +83,7 @@ def carried_by_filter(
     slopes += [b.sensitivity for b in prior_blocks(shown, estimate[kept], priors or {})]
     information = np.sum([X.T @ X for X in slopes], axis=0)
     step = np.linalg.pinv(information, hermitian=True) @ score
-    enough = {n: v for c, text in models.items() for n, v in reference_scales(c, text).items()}
+    enough = good_enough(models, (p.name for p in result.parameters))
     return with_steps(result, step, {**enough, **(scales or {})}, problem.logarithmic)
 
 

@@ -28,6 +28,7 @@ from alula.identify.flown.flight_functions import (
     places_of,
     record_of,
 )
+from alula.identify.flown.good_enough import good_enough
 from alula.identify.flown.measured_maneuver import OUTPUTS, STATES, MeasuredManeuver
 from alula.identify.flown.problem import check_tied
 from alula.identify.flown.start import start_values
@@ -37,7 +38,7 @@ from alula.identify.likelihood.parameters import Prior
 from alula.identify.linear.record import LinearRecord
 from alula.identify.result import Identification
 from alula.identify.typical import constant_name
-from alula.model import parse, reference_scales
+from alula.model import parse
 
 STATES_OF: Mapping[str, tuple[str, ...]] = {
     "longitudinal": ("alpha", "q"),
@@ -73,7 +74,7 @@ def identify_flight_filter_error(
     given = flight_filters(
         maneuvers, models, states, outputs, start, fixed, tied, common_constant=common_constant
     )
-    enough = {n: v for c, text in models.items() for n, v in reference_scales(c, text).items()}
+    enough = good_enough(models, [f"{s}(0)[{m.maneuver.id}]" for m in maneuvers for s in states])
     found = identify_extended_filter_error(
         given.models,
         given.records,

@@ -10,7 +10,7 @@ turns the cost into N/2 ln det R, or the sum of N/2 ln r_i.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Literal
 
@@ -21,6 +21,7 @@ from alula.base.messages import Message, note, refuse
 from alula.identify.equation_error.task import need_models
 from alula.identify.flown.core_maneuver import formula_model
 from alula.identify.flown.fit import Covariance, OutputErrorFit, fit_output_error
+from alula.identify.flown.good_enough import good_enough
 from alula.identify.flown.measured_maneuver import MeasuredManeuver
 from alula.identify.flown.output_likelihood import likelihood_of
 from alula.identify.flown.problem import STATE_SETS, FlightProblem, Setting
@@ -34,11 +35,9 @@ from alula.identify.trust.control_sign import signs_checked
 from alula.identify.trust.feedback import Feedback, distrusted, feedback, warn_of_feedback
 from alula.identify.trust.identifiability import UNCERTAIN
 from alula.identify.typical import typical_magnitude
-from alula.model import AeroModel, parse, reference_scales
+from alula.model import AeroModel, parse
 
 StateSet = Literal["longitudinal", "lateral", "six"]
-# Standard errors (m/s; rad, rad/s) at which an initial state is resolved, whatever its value.
-ENOUGH = {"V": 0.5}
 
 
 def identify_output_error(
@@ -160,12 +159,6 @@ def identify_output_error(
         messages=(*result.messages, *turned),
         status=result.status + "".join(f"; sign contradicted: {m.where}" for m in turned),
     )
-
-
-def good_enough(models: Mapping[str, str], names: Iterable[str]) -> dict[str, float]:
-    """Standard errors that are good enough: those that formulas state, and of initial states."""
-    out = {k: v for c, f in models.items() for k, v in reference_scales(c, f).items()}
-    return out | {n: ENOUGH.get(n.split("(")[0], 0.01) for n in names if "(0)" in n}
 
 
 def _predicted(
