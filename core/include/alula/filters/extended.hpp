@@ -1,7 +1,8 @@
 #pragma once
-// Extended Kalman filter for flight path reconstruction: exact Jacobian of the RK4 step and of the
-// outputs by dual numbers, readings taken up one after another with the Jacobian of the prediction
-// (which equals the batch update). Source: Dittrich 2016, Eq. (3.22) to (3.26).
+// Extended Kalman filter for flight path reconstruction: exact Jacobian of the RK4 step by the
+// variational equations and of the outputs by dual numbers, readings taken up one after another
+// with the Jacobian of the prediction (which equals the batch update). Source: Dittrich 2016, Eq.
+// (3.22) to (3.26).
 #include <alula/filters/careful_update.hpp>
 #include <alula/filters/path_jacobians.hpp>
 #include <alula/math/cholesky.hpp>
