@@ -107,8 +107,11 @@ void check_point_step() {
     double G[7][6];
     point_input_gain(s.y, G);
     for (int j = 0; j < 6; ++j) {
-      difference([&](const double* x, double* out) { point_derivative<7>(s.y, RollPitch<double>(s.y), x, kGravity, out); },
-                 s.m0, j, 1e-4, 7, column);
+      difference(
+          [&](const double* x, double* out) {
+            point_derivative<7>(s.y, RollPitch<double>(s.y), x, kGravity, out);
+          },
+          s.m0, j, 1e-4, 7, column);
       for (int i = 0; i < 7; ++i) EXPECT_NEAR(G[i][j], column[i], 1e-7) << i << ' ' << j;
     }
   }
