@@ -78,10 +78,13 @@ def most_memory() -> int:
 
 def peak_memory(panels: int, symmetry: bool) -> int:
     """Bytes that a process of its own held at most while it solved."""
-    code = f"import lattice_speed as s; s.ours({panels}, {symmetry})(); print(s.most_memory())"
+    code = (
+        f"from {__name__} import most_memory, ours; ours({panels}, {symmetry})(); "
+        "print(most_memory())"
+    )
     done = subprocess.run(
         [sys.executable, "-c", code],
-        cwd=Path(__file__).parent,
+        cwd=ROOT / "benchmarks",
         env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},
         check=True,
         capture_output=True,
