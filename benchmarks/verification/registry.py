@@ -45,6 +45,12 @@ def row(topic: str, name: str, must: str) -> Callable[[Check], Check]:
     return register
 
 
+def rows(topic: str, checks: dict[str, tuple[str, Check]]) -> None:
+    """Register many: by name, what must hold and the check."""
+    for name, (must, check) in checks.items():
+        ROWS.append(Row(topic, name, must, check))
+
+
 def not_built(topic: str, rows: dict[str, str]) -> None:
     """Rows of what does not exist yet: they are listed, and do not hold."""
     for name, must in rows.items():

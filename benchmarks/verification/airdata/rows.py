@@ -17,7 +17,7 @@ from verification.airdata import (
     probe_speed,
 )
 from verification.airdata import monitor as airdata_monitor
-from verification.registry import row
+from verification.registry import rows
 
 
 def speed(quick: bool) -> tuple[str, bool]:
@@ -95,5 +95,4 @@ ROWS = {
         speed,
     ),
 }
-for _name, (_must, _check) in ROWS.items():
-    row("airdata", _name, _must)(_check)
+rows("airdata", ROWS)

@@ -15,7 +15,7 @@ from verification.estimation import (
     twin_otter_output_error,
     unstable,
 )
-from verification.registry import row
+from verification.registry import rows
 
 
 def speed(quick: bool) -> tuple[str, bool]:
@@ -80,5 +80,4 @@ ROWS = {
         speed,
     ),
 }
-for _name, (_must, _check) in ROWS.items():
-    row("estimation", _name, _must)(_check)
+rows("estimation", ROWS)

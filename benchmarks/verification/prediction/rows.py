@@ -13,7 +13,7 @@ from verification.prediction import (
     slender_ellipsoid,
     sportstar_prediction,
 )
-from verification.registry import row
+from verification.registry import rows
 
 ROWS = {
     "`vortex_lattice.json`, every value": (
@@ -62,5 +62,4 @@ ROWS = {
         armhawk_tables.armhawk_tables,
     ),
 }
-for _name, (_must, _check) in ROWS.items():
-    row("prediction", _name, _must)(_check)
+rows("prediction", ROWS)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from verification.registry import row
+from verification.registry import rows
 from verification.simulator import (
     exported_jsbsim,
     linearization,
@@ -60,5 +60,4 @@ ROWS = {
         virtual_campaign.virtual_campaign,
     ),
 }
-for _name, (_must, _check) in ROWS.items():
-    row("simulator", _name, _must)(_check)
+rows("simulator", ROWS)

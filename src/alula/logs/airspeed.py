@@ -21,6 +21,7 @@ from alula.base.project import ChannelSpec, LogSpec
 from alula.base.units import G0, to_si
 from alula.flight import Channel
 from alula.logs.changes import at, integral, together
+from alula.logs.unit_message import other_unit_message
 
 UNITS = ("m/s", "kt", "km/h", "ft/s")
 FAR = 0.45  # of the ratio's logarithm: 1.57; kt for m/s is 1.94, an upwash or a wind less
@@ -49,21 +50,16 @@ def airspeed(
     """An error that names the other unit of V; a warning where the project confirms V."""
     if "V" not in channels or specs["V"].constant is not None:
         return None
-    sure = specs["V"].confirmed
     other = other_unit(channels, specs["V"].unit or "m/s")
     if other is None:
         return None
-    return Message(
-        "unit_implausible",
-        "warning" if sure else "error",
-        f"{log.path}: channel V",
+    return other_unit_message(
+        log,
+        "V",
         f"an airspeed of about {other.true:.3g} m/s, by {other.by}",
-        f"{other.stated:.3g} m/s: it looks like {other.unit}"
-        + ("; the project says 'confirmed'" if sure else ""),
-        "Nothing, if you are sure."
-        if sure
-        else f"If so, write unit = '{other.unit}'. If it is right as it is, write "
-        "confirmed = true.",
+        f"{other.stated:.3g} m/s",
+        other.unit,
+        confirmed=specs["V"].confirmed,
     )
 
 

@@ -12,6 +12,7 @@ from alula.base.project import ChannelSpec, LogSpec
 from alula.base.units import FT, to_si
 from alula.flight import Channel
 from alula.logs.changes import at, integral, together
+from alula.logs.unit_message import other_unit_message
 
 WINDOW = 2.0  # s over which climbs are compared
 ALIKE = 0.9  # correlation of two accounts of the climb
@@ -31,21 +32,12 @@ def heights(
         if other is None:
             continue
         unit, words, times = other
-        sure = specs[name].confirmed
         out.append(
-            Message(
-                "unit_implausible",
-                "warning" if sure else "error",
-                f"{log.path}: channel {name}",
-                f"climbs as {words}",
-                f"{times:.3g} times as much: it looks like {unit}"
-                + ("; the project says 'confirmed'" if sure else ""),
-                "Nothing, if you are sure."
-                if sure
-                else f"If so, write unit = '{unit}'. If it is right as it is, write "
-                "confirmed = true.",
+            other_unit_message(
+                log, name, f"climbs as {words}", f"{times:.3g} times as much", unit,
+                confirmed=specs[name].confirmed,
             )
-        )
+        )  # fmt: skip
     return out
 
 

@@ -11,6 +11,7 @@ from alula.base.project import ChannelSpec, LogSpec
 from alula.base.units import G0
 from alula.flight import Channel
 from alula.logs.changes import at, integral, together
+from alula.logs.unit_message import other_unit_message
 
 WINDOW = 0.5  # s over which changes are compared
 ALIKE = 0.7  # correlation of the two accounts
@@ -59,14 +60,6 @@ def flow_angles(
         if alike < ALIKE or not (ratio > FAR or ratio < 1.0 / FAR):
             continue
         looks = "deg" if ratio > 1.0 else "rad"
-        out.append(
-            Message(
-                "unit_implausible",
-                "error",
-                f"{log.path}: channel {name}",
-                f"changes as {force}, {rate} and V make them",
-                f"{ratio:.3g} times as much: it looks like {looks}",
-                f"If so, write unit = '{looks}'. If it is right as it is, write confirmed = true.",
-            )
-        )
+        expected = f"changes as {force}, {rate} and V make them"
+        out.append(other_unit_message(log, name, expected, f"{ratio:.3g} times as much", looks))
     return out

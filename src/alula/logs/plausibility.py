@@ -20,6 +20,7 @@ from alula.logs.airspeed import airspeed
 from alula.logs.height import heights
 from alula.logs.incidence import flow_angles
 from alula.logs.still import resting
+from alula.logs.unit_message import other_unit_message
 
 
 @dataclass(frozen=True)
@@ -222,17 +223,8 @@ def _times(
         dt = float(np.median(np.diff(channel.t)))
         looks = next((u for u, m in (("ns", 1e6), ("us", 5e2), ("ms", 5.0)) if dt >= m), None)
         if looks:
-            return [
-                Message(
-                    "unit_implausible",
-                    "error",
-                    f"{log.path}: channel t",
-                    "intervals under 5 s",
-                    f"a sample every {dt:.4g} s: it looks like {looks}",
-                    f"If so, write unit = '{looks}'. If it is right as it is, write "
-                    "confirmed = true.",
-                )
-            ]
+            found = f"a sample every {dt:.4g} s"
+            return [other_unit_message(log, "t", "intervals under 5 s", found, looks)]
     return []
 
 
